@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lightfield/plane.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fieldcast::image {
+
+/// Checked against what the header of a file claims, before pixels are decoded.
+struct ImageLimits {
+    std::uint64_t max_pixels = 1ULL << 26;
+};
+
+/// 8 bits per channel, not premultiplied, in the file's own transfer function.
+struct Rgba8 {
+    std::uint32_t width_px = 0;
+    std::uint32_t height_px = 0;
+    std::vector<std::uint8_t> pixels; ///< 4 bytes per pixel, row 0 on top
+};
+
+/// Linear RGB.
+struct RgbF32 {
+    std::uint32_t width_px = 0;
+    std::uint32_t height_px = 0;
+    std::vector<glm::vec3> pixels; ///< row 0 on top
+};
+
+/// Decodes PNG, JPEG, WebP and whatever else is recognised by its first bytes. 16-bit and grey images are converted,
+/// missing alpha is 255; no colour conversion, alpha stays unassociated. `name` is used in messages.
+/// Thread-safe. Throws UserError.
+Rgba8 decode_rgba8(std::span<const std::byte> bytes, const std::string& name, const ImageLimits& limits);
+
+/// Reads .hdr and .exr (first part; channels R, G, B, or one channel as grey) as linear RGB.
+/// NaN and negative values are refused, because they would spread through every estimate made from the image.
+/// +infinity is what a half-float image holds where the light was too bright for it: clamped to 65504, the largest
+/// half, and logged as a warning. Thread-safe. Throws UserError.
+RgbF32 read_rgb_f32(const std::filesystem::path& file, const ImageLimits& limits);
+
+/// Writes a kRgb8 plane as PNG. The file appears complete or not at all.
+/// Throws std::system_error or std::runtime_error if it cannot be written.
+void write_png(const std::filesystem::path& file, const Plane& rgb);
+void write_png(const std::filesystem::path& file, const Rgba8& rgba);
+
+} // namespace fieldcast::image
