@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/recorder.h"
+
+#include <glm/glm.hpp>
+
+namespace fieldcast::gpu {
+
+/// Geometry of a bottom level: positions are vec3-or-wider float32 with the given stride; indices are u32 triples.
+struct TriangleGeometry {
+    std::uint64_t vertex_address = 0;
+    std::uint32_t vertex_stride_bytes = 12;
+    std::uint32_t vertex_count = 0;
+    std::uint64_t index_address = 0;
+    std::uint32_t triangle_count = 0;
+    bool is_opaque = true; ///< false: candidates are reported to the shader (alpha test)
+};
+
+struct TopLevelInstance {
+    glm::mat4 world_from_object{1.0F};
+    std::uint32_t custom_index = 0; ///< < 2^24
+    std::uint64_t bottom_level_address = 0;
+    bool is_opaque = true;
+    std::uint8_t mask = 0xFF;
+};
+
+/// VK_KHR_acceleration_structure, for ray queries. Only on devices with `has_ray_query`.
+class AccelerationStructure {
+public:
+    AccelerationStructure() = default;
+    ~AccelerationStructure();
+    AccelerationStructure(AccelerationStructure&& other) noexcept;
+    AccelerationStructure& operator=(AccelerationStructure&& other) noexcept;
+
+    /// Builds (fast trace) and waits. One geometry per bottom level.
+    static AccelerationStructure bottom_level(const Device& device, const TriangleGeometry& geometry);
+    /// Top level over `instances`; `rebuild` may be called with as many or fewer instances.
+    static AccelerationStructure top_level(const Device& device, std::span<const TopLevelInstance> instances);
+    void rebuild(const Device& device, std::span<const TopLevelInstance> instances);
+
+    std::uint64_t address() const { return address_; }
+    VkAccelerationStructureKHR handle() const { return structure_; }
+
+private:
+    const Device* device_ = nullptr;
+    VkAccelerationStructureKHR structure_ = VK_NULL_HANDLE;
+    Buffer storage_;
+    Buffer scratch_;
+    Buffer instances_;
+    std::uint64_t address_ = 0;
+    std::uint32_t capacity_ = 0;
+};
+
+} // namespace fieldcast::gpu
