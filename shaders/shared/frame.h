@@ -25,12 +25,6 @@ struct Visibility {
     uint primitive;
 };
 SHARED_BUFFER(VisibilityBuffer, Visibility);
-SHARED_BUFFER(UintBuffer, uint);
-SHARED_BUFFER(FloatBuffer, float);
-SHARED_BUFFER(Vec2Buffer, vec2);
-SHARED_BUFFER(Vec4Buffer, vec4);
-SHARED_BUFFER(UVec2Buffer, uvec2);
-SHARED_BUFFER(UVec4Buffer, uvec4);
 
 SHARED_END
 #endif

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lightfield/guard_band.h"
+#include "core/render/grid_renderer.h"
+
+namespace fieldcast::render {
+
+/// What a channel decides once, when it starts.
+
+/// Guard band for the scene as posed now (conventions, "Guard band"): traces the depth of a widened source at reduced
+/// size and asks choose_guard_band. The band is in pixels of `source`.
+GuardBandChoice measure_guard_band(const gpu::Device& device, const scene::GpuScene& scene, const Camera& source,
+                                   const ViewGrid& largest);
+
+/// Exposure that brings the log-average luminance of the source view to 0.18 (conventions, "auto").
+float auto_exposure(GridRenderer& grid_renderer, const SourcePlanes& source);
+
+/// The rigid pose of `camera` in the scene's current pose.
+Camera source_camera(const scene::GpuScene& scene, const scene::CameraNode& camera, std::uint32_t width_px,
+                     std::uint32_t height_px);
+
+} // namespace fieldcast::render

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/error.h"
+#include "core/gpu/buffer.h"
+#include "core/lightfield/source_frame.h"
+
+#include <array>
+#include <span>
+
+namespace fieldcast::render {
+
+/// All planes of a SourceFrame, in the order of their semantics.
+inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
+                                             PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
+
+/// The format in which a source plane is kept on the device and on the wire.
+PlaneFormat source_format(PlaneSemantic semantic);
+
+/// A SourceFrame on the device, in wire precision: what views are made from on both sides.
+/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits).
+class SourcePlanes {
+public:
+    explicit SourcePlanes(const gpu::Device& device);
+
+    /// Makes room for the planes of `header` and keeps the header. Contents are undefined afterwards.
+    void resize(const FrameHeader& header);
+
+    /// Copies planes to the host (the wire's SourceFrame).
+    SourceFrame download(std::span<const PlaneSemantic> wanted) const;
+
+    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format.
+    Decoded<bool> upload(const SourceFrame& frame);
+
+    const FrameHeader& header() const { return header_; }
+    Camera camera() const { return with_guard_band(header_.source, header_.guard_band); }
+    std::uint32_t pixel_count() const { return pixel_count_; }
+    const gpu::Buffer& plane(PlaneSemantic semantic) const;
+
+private:
+    const gpu::Device& device_;
+    FrameHeader header_;
+    std::uint32_t pixel_count_ = 0;
+    std::array<gpu::Buffer, kSourceSemantics.size()> planes_;
+};
+
+} // namespace fieldcast::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/render/source_planes.h"
+#include "core/scene/gpu_scene.h"
+
+#include <memory>
+
+namespace fieldcast::render {
+
+/// Makes SourceFrames: visibility, path tracing, temporal accumulation, SVGF, packing to wire precision.
+/// Keeps the history of one camera. Not thread-safe.
+class SourceRenderer {
+public:
+    SourceRenderer(const gpu::Device& device, const scene::GpuScene& scene);
+    ~SourceRenderer();
+
+    /// Renders the frame described by `header` (everything but render_times is input) with the scene as it is posed
+    /// now. The result stays valid until the next call; its header carries the stage times.
+    const SourcePlanes& render(const FrameHeader& header);
+
+    /// Samples that were NaN or infinite and were dropped, since construction. Must stay 0.
+    std::uint64_t invalid_sample_count() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Fills the G-buffer planes (depth, normal, id, material) of `planes` from the scene as posed now:
+/// what a client does that received illumination only. Bit-identical to the server's on the same device.
+class SurfacePlanesRenderer {
+public:
+    SurfacePlanesRenderer(const gpu::Device& device, const scene::GpuScene& scene);
+    ~SurfacePlanesRenderer();
+    void render(SourcePlanes& planes);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace fieldcast::render

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/bindings.h"
+#include "core/scene/scene.h"
+
+#include <memory>
+#include <string>
+
+namespace fieldcast::scene {
+
+/// How rays are traced: our own BVH in texel buffers, or VK_KHR_ray_query.
+enum class Traversal : std::uint8_t { kBvh, kRayQuery };
+
+/// Reads "bvh" | "rayquery"; "auto" takes the BVH on CPU devices and without ray query; on other devices both are
+/// timed once and the faster one is kept by device UUID and driver version. Throws UserError if it cannot be had.
+Traversal choose_traversal(const gpu::Device& device, const std::string& wish);
+
+/// A scene on a Vulkan device: descriptor set 0 of every kernel that looks at surfaces (shaders/shared/scene.h).
+/// `scene` must outlive it.
+class GpuScene {
+public:
+    GpuScene(const gpu::Device& device, const Scene& scene, Traversal traversal);
+    ~GpuScene();
+    GpuScene(const GpuScene&) = delete;
+    GpuScene& operator=(const GpuScene&) = delete;
+
+    /// Places everything as it is at `time_ns`. The pose before becomes the previous pose (motion of surfaces);
+    /// with `cut` there is no motion. Not while submitted work uses the scene.
+    void pose(std::int64_t time_ns, bool cut);
+
+    const ScenePose& current_pose() const;
+    const Scene& scene() const;
+    Traversal traversal() const;
+    const gpu::BindingLayout& layout() const;
+    const gpu::BindingSet& bindings() const;
+    bool has_alpha() const; ///< some material is MASK or BLEND
+    bool has_blend() const;
+    std::uint64_t device_bytes() const; ///< of all buffers and textures
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace fieldcast::scene
