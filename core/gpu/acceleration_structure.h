@@ -21,7 +21,7 @@ struct TopLevelInstance {
     glm::mat4 world_from_object{1.0F};
     std::uint32_t custom_index = 0; ///< < 2^24
     std::uint64_t bottom_level_address = 0;
-    bool is_opaque = true;
+    bool is_opaque = true; ///< false: candidates are reported even if the geometry is opaque
     std::uint8_t mask = 0xFF;
 };
 

@@ -30,6 +30,7 @@ public:
     std::uint64_t size_bytes() const { return size_bytes_; }
     std::uint64_t address() const { return address_; } ///< for push constants
     std::byte* mapped() const { return mapped_; }      ///< null for kDevice memory that is not host visible
+    bool is_cached() const { return is_cached_; }      ///< `mapped()` may be read at full speed
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:
@@ -41,6 +42,7 @@ private:
     std::uint64_t size_bytes_ = 0;
     std::uint64_t address_ = 0;
     std::byte* mapped_ = nullptr;
+    bool is_cached_ = false;
 };
 
 /// Writes host data into a buffer (any memory), through a staging copy where needed. Blocks.
@@ -53,8 +55,7 @@ void read_buffer(const Device& device, const Buffer& buffer, std::span<std::byte
 
 /// A device buffer holding a copy of `values` (at least 16 bytes even if empty).
 template <class T>
-    requires std::is_trivially_copyable_v<T>
-Buffer make_buffer(const Device& device, std::span<const T> values) {
+requires std::is_trivially_copyable_v<T> Buffer make_buffer(const Device& device, std::span<const T> values) {
     Buffer buffer(device, values.size_bytes());
     if (!values.empty()) {
         write_buffer(device, buffer, std::as_bytes(values));
@@ -63,9 +64,8 @@ Buffer make_buffer(const Device& device, std::span<const T> values) {
 }
 
 template <class T>
-    requires std::is_trivially_copyable_v<T>
-std::vector<T> read_buffer_as(const Device& device, const Buffer& buffer, std::size_t count,
-                              std::uint64_t offset_bytes = 0) {
+requires std::is_trivially_copyable_v<T> std::vector<T>
+read_buffer_as(const Device& device, const Buffer& buffer, std::size_t count, std::uint64_t offset_bytes = 0) {
     std::vector<T> values(count);
     read_buffer(device, buffer, std::as_writable_bytes(std::span(values)), offset_bytes);
     return values;

@@ -79,7 +79,10 @@ public:
 
 private:
     static std::array<VkDescriptorSet, 4> set_handles(std::initializer_list<const BindingSet*> sets);
+    void create();
+    void release() noexcept;
     void begin();
+    void write_timestamp();
     void collect_durations();
 
     const Device& device_;

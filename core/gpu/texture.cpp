@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/gpu/texture.h"
+
+#include "core/base/error.h"
+#include "core/gpu/format.h"
+#include "core/gpu/run_once.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace fieldcast::gpu {
+namespace {
+
+std::uint32_t mip_count(const TextureDesc& desc) {
+    return desc.mip_maps ? static_cast<std::uint32_t>(std::bit_width(std::max(desc.width_px, desc.height_px))) : 1U;
+}
+
+void require_format(const Device& device, const TextureDesc& desc) {
+    VkFormatProperties properties{};
+    vkGetPhysicalDeviceFormatProperties(device.physical(), desc.format, &properties);
+    VkFormatFeatureFlags wanted =
+        VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    if (desc.mip_maps) {
+        wanted |= VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    }
+    if ((properties.optimalTilingFeatures & wanted) != wanted) {
+        throw VulkanError("vkCreateImage: " + device.info().name + " cannot filter images of VkFormat " +
+                          std::to_string(desc.format));
+    }
+    const auto& info = device.info();
+    if (std::max(desc.width_px, desc.height_px) > info.max_image_side || desc.layers > info.max_image_layers) {
+        throw VulkanError("vkCreateImage: " + std::to_string(desc.width_px) + "x" + std::to_string(desc.height_px) +
+                          " with " + std::to_string(desc.layers) + " layers is more than " + info.name + " allows (" +
+                          std::to_string(info.max_image_side) + ", " + std::to_string(info.max_image_layers) + ")");
+    }
+}
+
+VkImage create_image(const Device& device, const TextureDesc& desc) {
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = desc.format;
+    info.extent = {desc.width_px, desc.height_px, 1};
+    info.mipLevels = mip_count(desc);
+    info.arrayLayers = desc.layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    VkImage image = VK_NULL_HANDLE;
+    check(vkCreateImage(device.handle(), &info, nullptr, &image), "vkCreateImage");
+    return image;
+}
+
+VkDeviceMemory allocate_memory(const Device& device, VkImage image) {
+    VkMemoryRequirements requirements{};
+    vkGetImageMemoryRequirements(device.handle(), image, &requirements);
+    const auto local = device.memory_type(requirements.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    VkMemoryAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    info.allocationSize = requirements.size;
+    info.memoryTypeIndex = local ? *local : device.memory_type(requirements.memoryTypeBits, 0).value();
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    check(vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory");
+    return memory;
+}
+
+VkImageView create_view(VkDevice device, VkImage image, const TextureDesc& desc) {
+    VkImageViewCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    info.image = image;
+    info.viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    info.format = desc.format;
+    info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, mip_count(desc), 0, desc.layers};
+    VkImageView view = VK_NULL_HANDLE;
+    check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
+    return view;
+}
+
+VkSampler create_sampler(VkDevice device) {
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    info.magFilter = VK_FILTER_LINEAR;
+    info.minFilter = VK_FILTER_LINEAR;
+    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    info.addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    info.addressModeV = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    VkSampler sampler = VK_NULL_HANDLE;
+    check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
+    return sampler;
+}
+
+/// Mip levels and layers of an image, and what happens to them.
+struct Transition {
+    VkImageLayout from = VK_IMAGE_LAYOUT_UNDEFINED;
+    VkImageLayout to = VK_IMAGE_LAYOUT_UNDEFINED;
+    std::uint32_t first_mip = 0;
+    std::uint32_t mips = VK_REMAINING_MIP_LEVELS;
+};
+
+/// Full barriers: textures are made once, when a scene is loaded.
+void transition(VkCommandBuffer commands, VkImage image, const Transition& change) {
+    VkImageMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = change.from;
+    barrier.newLayout = change.to;
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, change.first_mip, change.mips, 0, VK_REMAINING_ARRAY_LAYERS};
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+VkOffset3D mip_corner(const TextureDesc& desc, std::uint32_t mip) {
+    return {static_cast<std::int32_t>(std::max(desc.width_px >> mip, 1U)),
+            static_cast<std::int32_t>(std::max(desc.height_px >> mip, 1U)), 1};
+}
+
+/// Halves level by level: a linear blit of a power of two averages 2×2 texels, in linear light for sRGB formats.
+void make_mips(VkCommandBuffer commands, VkImage image, const TextureDesc& desc) {
+    for (std::uint32_t mip = 1; mip < mip_count(desc); ++mip) {
+        transition(commands, image,
+                   {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, mip - 1, 1});
+        VkImageBlit blit{};
+        blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, desc.layers};
+        blit.srcOffsets[1] = mip_corner(desc, mip - 1);
+        blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, desc.layers};
+        blit.dstOffsets[1] = mip_corner(desc, mip);
+        vkCmdBlitImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
+                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
+        transition(commands, image,
+                   {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, mip - 1, 1});
+    }
+    transition(
+        commands, image,
+        {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, mip_count(desc) - 1, 1});
+}
+
+/// Layer by layer, so that staging needs the memory of one layer only.
+void upload(const Device& device, VkImage image, const TextureDesc& desc,
+            std::span<const std::span<const std::byte>> layer_bytes) {
+    const Buffer staging(device, layer_bytes[0].size(), Memory::kUpload);
+    for (std::uint32_t layer = 0; layer < desc.layers; ++layer) {
+        write_buffer(device, staging, layer_bytes[layer]);
+        run_once(device, [&](VkCommandBuffer commands) {
+            if (layer == 0) {
+                transition(commands, image, {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL});
+            }
+            VkBufferImageCopy region{};
+            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
+            region.imageExtent = {desc.width_px, desc.height_px, 1};
+            vkCmdCopyBufferToImage(commands, staging.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        });
+    }
+    run_once(device, [&](VkCommandBuffer commands) { make_mips(commands, image, desc); });
+}
+
+} // namespace
+
+Texture::Texture(const Device& device, const TextureDesc& desc, std::span<const std::span<const std::byte>> layer_bytes)
+    : Texture() {
+    const auto bytes = std::size_t{desc.width_px} * desc.height_px * texel_bytes(desc.format);
+    FC_ASSERT(bytes > 0 && desc.layers > 0 && layer_bytes.size() == desc.layers, "one span per layer");
+    FC_ASSERT(std::ranges::all_of(layer_bytes, [&](const auto& layer) { return layer.size() == bytes; }),
+              "a layer is not width x height texels");
+    require_format(device, desc);
+    device_ = device.handle();
+    desc_ = desc;
+    image_ = create_image(device, desc);
+    memory_ = allocate_memory(device, image_);
+    check(vkBindImageMemory(device_, image_, memory_, 0), "vkBindImageMemory");
+    view_ = create_view(device_, image_, desc);
+    sampler_ = create_sampler(device_);
+    upload(device, image_, desc, layer_bytes);
+}
+
+Texture::~Texture() {
+    release();
+}
+
+Texture::Texture(Texture&& other) noexcept : Texture() {
+    *this = std::move(other);
+}
+
+Texture& Texture::operator=(Texture&& other) noexcept {
+    if (this != &other) {
+        release();
+        device_ = std::exchange(other.device_, VK_NULL_HANDLE);
+        desc_ = other.desc_;
+        image_ = std::exchange(other.image_, VK_NULL_HANDLE);
+        memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+        view_ = std::exchange(other.view_, VK_NULL_HANDLE);
+        sampler_ = std::exchange(other.sampler_, VK_NULL_HANDLE);
+    }
+    return *this;
+}
+
+void Texture::release() noexcept {
+    if (device_ != VK_NULL_HANDLE) {
+        vkDestroySampler(device_, sampler_, nullptr);
+        vkDestroyImageView(device_, view_, nullptr);
+        vkDestroyImage(device_, image_, nullptr);
+        vkFreeMemory(device_, memory_, nullptr);
+    }
+}
+
+} // namespace fieldcast::gpu
