@@ -32,8 +32,8 @@ struct RgbF32 {
     std::vector<glm::vec3> pixels; ///< row 0 on top
 };
 
-/// Decodes PNG, JPEG, WebP and whatever else is recognised by its first bytes. 16-bit and grey images are converted,
-/// missing alpha is 255; no colour conversion, alpha stays unassociated. `name` is used in messages.
+/// Decodes PNG, JPEG or WebP, recognised by the first bytes. 16-bit and grey images are converted, missing alpha is
+/// 255; no colour conversion, no rotation, alpha stays unassociated. `name` is used in messages.
 /// Thread-safe. Throws UserError.
 Rgba8 decode_rgba8(std::span<const std::byte> bytes, const std::string& name, const ImageLimits& limits);
 
@@ -43,9 +43,15 @@ Rgba8 decode_rgba8(std::span<const std::byte> bytes, const std::string& name, co
 /// half, and logged as a warning. Thread-safe. Throws UserError.
 RgbF32 read_rgb_f32(const std::filesystem::path& file, const ImageLimits& limits);
 
-/// Writes a kRgb8 plane as PNG. The file appears complete or not at all.
-/// Throws std::system_error or std::runtime_error if it cannot be written.
+/// Encodes a kRgb8 plane, or an image with alpha, as an sRGB PNG. Equal pixels give equal bytes.
+std::vector<std::byte> encode_png(const Plane& rgb);
+std::vector<std::byte> encode_png(const Rgba8& rgba);
+
+/// Writes a PNG; the file appears complete or not at all. Throws std::system_error.
 void write_png(const std::filesystem::path& file, const Plane& rgb);
 void write_png(const std::filesystem::path& file, const Rgba8& rgba);
+
+/// Writes linear RGB as a FLOAT EXR, which read_rgb_f32 gives back exactly. Throws std::system_error.
+void write_exr(const std::filesystem::path& file, const RgbF32& rgb);
 
 } // namespace fieldcast::image
