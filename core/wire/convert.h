@@ -22,7 +22,7 @@ void to_proto(const Camera& camera, v1::PinholeCamera& message);
 Decoded<Camera> from_proto(const v1::PinholeCamera& message);
 
 void to_proto(const GuardBand& band, v1::GuardBand& message);
-GuardBand from_proto(const v1::GuardBand& message);
+Decoded<GuardBand> from_proto(const v1::GuardBand& message);
 
 void to_proto(const RenderSettings& settings, v1::RenderSettings& message);
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message);

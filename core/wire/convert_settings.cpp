@@ -1,1 +1,229 @@
 // SPDX-License-Identifier: Apache-2.0
+// RenderSettings and small values; convert.cpp has cameras, grids and headers.
+#include "core/wire/convert.h"
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace fieldcast::wire {
+
+namespace {
+
+constexpr std::uint32_t kMaxSamplesPerPixel = 65536;
+constexpr std::uint32_t kMaxBounces = 256;
+
+v1::Denoiser denoiser_to_proto(Denoiser denoiser) {
+    switch (denoiser) {
+    case Denoiser::kNone:
+        return v1::DENOISER_NONE;
+    case Denoiser::kSvgf:
+        return v1::DENOISER_SVGF;
+    }
+    return v1::DENOISER_UNSPECIFIED;
+}
+
+std::optional<Denoiser> denoiser_from_proto(int number) {
+    switch (number) {
+    case v1::DENOISER_NONE:
+        return Denoiser::kNone;
+    case v1::DENOISER_SVGF:
+        return Denoiser::kSvgf;
+    default: // any number may stand in a message
+        return std::nullopt;
+    }
+}
+
+v1::ToneMap tone_map_to_proto(ToneMap tone_map) {
+    switch (tone_map) {
+    case ToneMap::kClampSrgb:
+        return v1::TONE_MAP_CLAMP_SRGB;
+    case ToneMap::kAces:
+        return v1::TONE_MAP_ACES;
+    }
+    return v1::TONE_MAP_UNSPECIFIED;
+}
+
+std::optional<ToneMap> tone_map_from_proto(int number) {
+    switch (number) {
+    case v1::TONE_MAP_CLAMP_SRGB:
+        return ToneMap::kClampSrgb;
+    case v1::TONE_MAP_ACES:
+        return ToneMap::kAces;
+    default: // any number may stand in a message
+        return std::nullopt;
+    }
+}
+
+/// A float of the settings and the range it must lie in; NaN lies in none.
+struct BoundedFloat {
+    const char* name;
+    float value;
+    float min;
+    float max;
+};
+
+Decoded<void> check_floats(const RenderSettings& settings) {
+    constexpr float kMax = std::numeric_limits<float>::max();
+    constexpr float kMin = std::numeric_limits<float>::min();
+    const ReprojectionThresholds& limits = settings.reprojection;
+    const std::array<BoundedFloat, 7> fields{{
+        {"indirect_clamp", settings.indirect_clamp, 0.0F, kMax},
+        {"temporal_alpha", settings.temporal_alpha, 0.0F, 1.0F},
+        {"exposure", settings.exposure, kMin, kMax},
+        {"reprojection.plane_footprints", limits.plane_footprints, 0.0F, kMax},
+        {"reprojection.tangential_footprints", limits.tangential_footprints, 0.0F, kMax},
+        {"reprojection.min_normal_cos", limits.min_normal_cos, -1.0F, 1.0F},
+        {"reprojection.min_weight", limits.min_weight, 0.0F, 1.0F},
+    }};
+    for (const BoundedFloat& field : fields) {
+        if (!(field.value >= field.min && field.value <= field.max)) {
+            return decode_error(std::string("settings.") + field.name + ": " + std::to_string(field.value) +
+                                " is out of range");
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
+    message.set_samples_per_pixel(settings.samples_per_pixel);
+    message.set_max_bounces(settings.max_bounces);
+    message.set_next_event_estimation(settings.next_event_estimation);
+    message.set_indirect_clamp(settings.indirect_clamp);
+    message.set_denoiser(denoiser_to_proto(settings.denoiser));
+    message.set_temporal_accumulation(settings.temporal_accumulation);
+    message.set_temporal_alpha(settings.temporal_alpha);
+    message.set_tone_map(tone_map_to_proto(settings.tone_map));
+    message.set_exposure(settings.exposure);
+    v1::ReprojectionThresholds& thresholds = *message.mutable_reprojection();
+    thresholds.set_plane_footprints(settings.reprojection.plane_footprints);
+    thresholds.set_tangential_footprints(settings.reprojection.tangential_footprints);
+    thresholds.set_min_normal_cos(settings.reprojection.min_normal_cos);
+    thresholds.set_min_weight(settings.reprojection.min_weight);
+}
+
+Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
+    const auto denoiser = denoiser_from_proto(message.denoiser());
+    const auto tone_map = tone_map_from_proto(message.tone_map());
+    if (!denoiser || !tone_map) {
+        return decode_error("settings: unknown denoiser or tone map");
+    }
+    RenderSettings settings;
+    settings.samples_per_pixel = message.samples_per_pixel();
+    settings.max_bounces = message.max_bounces();
+    if (settings.samples_per_pixel == 0 || settings.samples_per_pixel > kMaxSamplesPerPixel) {
+        return decode_error("settings.samples_per_pixel: 1 to " + std::to_string(kMaxSamplesPerPixel));
+    }
+    if (settings.max_bounces > kMaxBounces) {
+        return decode_error("settings.max_bounces: at most " + std::to_string(kMaxBounces));
+    }
+    settings.next_event_estimation = message.next_event_estimation();
+    settings.indirect_clamp = message.indirect_clamp();
+    settings.denoiser = *denoiser;
+    settings.temporal_accumulation = message.temporal_accumulation();
+    settings.temporal_alpha = message.temporal_alpha();
+    settings.tone_map = *tone_map;
+    settings.exposure = message.exposure();
+    settings.reprojection = {message.reprojection().plane_footprints(), message.reprojection().tangential_footprints(),
+                             message.reprojection().min_normal_cos(), message.reprojection().min_weight()};
+    if (const auto checked = check_floats(settings); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    return settings;
+}
+
+void to_proto(const DiscardCounts& counts, v1::DiscardCounts& message) {
+    message.set_out_of_frustum(counts.out_of_frustum);
+    message.set_id(counts.id);
+    message.set_plane(counts.plane);
+    message.set_normal(counts.normal);
+}
+
+DiscardCounts from_proto(const v1::DiscardCounts& message) {
+    return {message.out_of_frustum(), message.id(), message.plane(), message.normal()};
+}
+
+void to_proto(const ServerTimes& times, v1::ServerTimes& message) {
+    message.set_pose_sampled_ns(times.pose_sampled_ns);
+    message.set_render_begin_ns(times.render_begin_ns);
+    message.set_render_end_ns(times.render_end_ns);
+    message.set_encode_end_ns(times.encode_end_ns);
+    message.set_send_begin_ns(times.send_begin_ns);
+    message.set_send_end_ns(times.send_end_ns);
+}
+
+ServerTimes from_proto(const v1::ServerTimes& message) {
+    return {message.pose_sampled_ns(), message.render_begin_ns(), message.render_end_ns(),
+            message.encode_end_ns(),   message.send_begin_ns(),   message.send_end_ns()};
+}
+
+v1::Codec to_proto(codec::CodecId codec) {
+    return static_cast<v1::Codec>(codec); // same numbers, checked below
+}
+
+v1::PlaneSemantic to_proto(PlaneSemantic semantic) {
+    return static_cast<v1::PlaneSemantic>(semantic);
+}
+
+v1::PlaneFormat to_proto(PlaneFormat format) {
+    return static_cast<v1::PlaneFormat>(format);
+}
+
+std::optional<codec::CodecId> from_proto(v1::Codec codec) {
+    return codec < 0 ? std::nullopt : codec::codec_from_number(static_cast<std::uint64_t>(codec));
+}
+
+std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic) {
+    const bool is_known = semantic >= v1::PLANE_SEMANTIC_DIFFUSE && semantic <= v1::PLANE_SEMANTIC_COLOUR;
+    return is_known ? std::optional(static_cast<PlaneSemantic>(semantic)) : std::nullopt;
+}
+
+std::optional<PlaneFormat> from_proto(v1::PlaneFormat format) {
+    const bool is_known = format >= v1::PLANE_FORMAT_R11G11B10F && format <= v1::PLANE_FORMAT_RGB8;
+    return is_known ? std::optional(static_cast<PlaneFormat>(format)) : std::nullopt;
+}
+
+PlaneFormat wire_format(PlaneSemantic semantic) {
+    switch (semantic) {
+    case PlaneSemantic::kDiffuse:
+    case PlaneSemantic::kSpecular:
+        return PlaneFormat::kR11G11B10F;
+    case PlaneSemantic::kDepth:
+        return PlaneFormat::kF32;
+    case PlaneSemantic::kNormal:
+        return PlaneFormat::kOct2x16;
+    case PlaneSemantic::kId:
+        return PlaneFormat::kU32;
+    case PlaneSemantic::kMaterial:
+        return PlaneFormat::kRg8;
+    case PlaneSemantic::kColour:
+        return PlaneFormat::kRgb8;
+    }
+    return PlaneFormat::kRgb8;
+}
+
+namespace {
+
+constexpr bool same(auto ours, int theirs) {
+    return static_cast<int>(ours) == theirs;
+}
+
+static_assert(same(codec::CodecId::kRaw, v1::CODEC_RAW) &&
+              same(codec::CodecId::kZstdFiltered, v1::CODEC_ZSTD_FILTERED));
+static_assert(same(PlaneSemantic::kDiffuse, v1::PLANE_SEMANTIC_DIFFUSE) &&
+              same(PlaneSemantic::kSpecular, v1::PLANE_SEMANTIC_SPECULAR) &&
+              same(PlaneSemantic::kDepth, v1::PLANE_SEMANTIC_DEPTH) &&
+              same(PlaneSemantic::kNormal, v1::PLANE_SEMANTIC_NORMAL) &&
+              same(PlaneSemantic::kId, v1::PLANE_SEMANTIC_ID) &&
+              same(PlaneSemantic::kMaterial, v1::PLANE_SEMANTIC_MATERIAL) &&
+              same(PlaneSemantic::kColour, v1::PLANE_SEMANTIC_COLOUR));
+static_assert(same(PlaneFormat::kR11G11B10F, v1::PLANE_FORMAT_R11G11B10F) &&
+              same(PlaneFormat::kF32, v1::PLANE_FORMAT_F32) && same(PlaneFormat::kOct2x16, v1::PLANE_FORMAT_OCT2X16) &&
+              same(PlaneFormat::kU32, v1::PLANE_FORMAT_U32) && same(PlaneFormat::kRg8, v1::PLANE_FORMAT_RG8) &&
+              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8));
+
+} // namespace
+
+} // namespace fieldcast::wire

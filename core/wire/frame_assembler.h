@@ -74,6 +74,9 @@ public:
 
 private:
     struct Frame;
+    Decoded<std::optional<ReceivedFrame>> add_to_frame(v1::FrameChunk& chunk);
+    Decoded<void> check_order(const v1::FrameChunk& chunk) const;
+
     std::unique_ptr<Frame> frame_; ///< in progress, or null
     WorkerPool* pool_;
     FrameLimits limits_;
