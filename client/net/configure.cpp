@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/net/configure.h"
+
+#include "core/wire/convert.h"
+
+#include <algorithm>
+
+namespace fieldcast::client::net {
+namespace {
+
+// What one client holds at most, whatever a server claims.
+constexpr std::uint32_t kMaxViewSide = 8192;
+constexpr std::uint64_t kMaxFrameBytes = 1ULL << 30;
+
+v1::DeliveryMode to_proto(Mode mode) {
+    switch (mode) {
+    case Mode::kViews:
+        return v1::DELIVERY_MODE_VIEWS;
+    case Mode::kScene:
+        return v1::DELIVERY_MODE_SCENE;
+    }
+    return v1::DELIVERY_MODE_UNSPECIFIED;
+}
+
+v1::PlaneSet to_proto(PlaneWish planes) {
+    switch (planes) {
+    case PlaneWish::kWithGBuffer:
+        return v1::PLANE_SET_WITH_G_BUFFER;
+    case PlaneWish::kIllumination:
+        return v1::PLANE_SET_ILLUMINATION;
+    }
+    return v1::PLANE_SET_UNSPECIFIED;
+}
+
+std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Wish& wish) {
+    if (set.grid.rows != wish.rows || set.grid.cols != wish.cols || set.grid.anchor != wish.anchor) {
+        return "Configured: another grid than asked for";
+    }
+    if (wish.width_px != 0 && (set.width_px != wish.width_px || set.height_px != wish.height_px)) {
+        return "Configured: another view size than asked for";
+    }
+    if (set.width_px > kMaxViewSide || set.height_px > kMaxViewSide) {
+        return "Configured: views beyond " + std::to_string(kMaxViewSide) + " px";
+    }
+    return std::nullopt;
+}
+
+/// Sizes in Configured are upper bounds; the assembler checks frames against what follows from them.
+Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wire::ViewSet& set, Mode mode) {
+    wire::FrameLimits limits;
+    limits.max_width_px = set.width_px;
+    limits.max_height_px = set.height_px;
+    std::uint64_t frame_bytes = 3ULL * set.width_px * set.height_px * set.grid.view_count();
+    if (mode == Mode::kScene) {
+        frame_bytes = 0;
+        for (const v1::PlaneHeader& plane : message.planes()) {
+            if (plane.width_px() == 0 || plane.width_px() > kMaxPlaneSide || plane.height_px() == 0 ||
+                plane.height_px() > kMaxPlaneSide) {
+                return decode_error("Configured: a plane has a size outside 1 … 16384");
+            }
+            limits.max_width_px = std::max(limits.max_width_px, plane.width_px());
+            limits.max_height_px = std::max(limits.max_height_px, plane.height_px());
+            frame_bytes += 4ULL * plane.width_px() * plane.height_px();
+        }
+    }
+    if (frame_bytes > kMaxFrameBytes) {
+        return decode_error("Configured: frames of " + std::to_string(frame_bytes >> 20) + " MiB, at most 1024 MiB");
+    }
+    limits.max_frame_bytes = frame_bytes;
+    return limits;
+}
+
+std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set) {
+    if (frame.find(PlaneSemantic::kDiffuse) == nullptr || frame.find(PlaneSemantic::kSpecular) == nullptr) {
+        return "frame without illumination planes";
+    }
+    const Camera& source = frame.header.source;
+    if (set.height_px > source.height_px || set.width_px > source.width_px) {
+        return "source smaller than the views";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> views_problem(const wire::ReceivedViews& views, const wire::ViewSet& set) {
+    if (views.set != set || views.views.views.size() != set.grid.view_count()) {
+        return "frame with other views than agreed";
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
+    v1::Configure message;
+    message.set_request_id(request_id);
+    message.set_channel(wish.channel);
+    message.add_modes(to_proto(wish.mode));
+    v1::Grid& grid = *message.mutable_grid();
+    grid.set_rows(wish.rows);
+    grid.set_cols(wish.cols);
+    grid.set_anchor(wish.anchor == Anchor::kCentre ? v1::ANCHOR_CENTRE : v1::ANCHOR_LATTICE);
+    if (wish.spacing_m) {
+        grid.set_spacing_x_m(*wish.spacing_m);
+        grid.set_spacing_y_m(*wish.spacing_m);
+    }
+    if (wish.convergence_m) {
+        grid.set_convergence_m(*wish.convergence_m);
+    }
+    message.set_view_width_px(wish.width_px);
+    message.set_view_height_px(wish.height_px);
+    message.set_fovy_rad(wish.fovy_rad);
+    message.set_planes(to_proto(wish.planes));
+    message.set_max_frames_per_second(wish.max_frames_per_second);
+    return message;
+}
+
+Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish) {
+    Agreement agreement;
+    agreement.epoch = message.epoch();
+    agreement.channel = message.channel();
+    agreement.mode = wish.mode;
+    if (message.mode() != to_proto(wish.mode)) {
+        return decode_error("Configured: another delivery mode than asked for");
+    }
+    if (message.epoch() == 0 || message.scene_hash().size() != agreement.scene_hash.size()) {
+        return decode_error("Configured: epoch 0 or no scene hash of 32 bytes");
+    }
+    std::copy(message.scene_hash().begin(), message.scene_hash().end(), agreement.scene_hash.begin());
+    const Decoded<wire::ViewSet> set = wire::from_proto(message.view_set());
+    if (!set) {
+        return decode_error("Configured: " + set.error().message);
+    }
+    agreement.view_set = *set;
+    if (const auto problem = view_set_problem(*set, wish)) {
+        return decode_error(*problem);
+    }
+    const Decoded<wire::FrameLimits> limits = frame_limits(message, *set, wish.mode);
+    if (!limits) {
+        return tl::unexpected(limits.error());
+    }
+    agreement.limits = *limits;
+    return agreement;
+}
+
+std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const Agreement& agreement) {
+    const auto* views = std::get_if<wire::ReceivedViews>(&frame.content);
+    if ((views != nullptr) != (agreement.mode == Mode::kViews)) {
+        return "frame of another delivery mode than agreed";
+    }
+    return views != nullptr ? views_problem(*views, agreement.view_set)
+                            : source_problem(std::get<SourceFrame>(frame.content), agreement.view_set);
+}
+
+} // namespace fieldcast::client::net

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/error.h"
+#include "core/scene/scene.h"
+#include "core/wire/frame_assembler.h"
+
+#include "fieldcast/v1/light_field.pb.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fieldcast::client::net {
+
+enum class Mode : std::uint8_t {
+    kViews, ///< the server sends finished views
+    kScene, ///< the server sends planes of the source; we make the views
+};
+
+/// Of mode kScene.
+enum class PlaneWish : std::uint8_t { kWithGBuffer, kIllumination };
+
+/// What to ask a server for. Zero or unset: as the server's channel has it.
+struct Wish {
+    std::string channel;
+    Mode mode = Mode::kViews;
+    std::uint32_t rows = 4;
+    std::uint32_t cols = 4;
+    Anchor anchor = Anchor::kLattice;
+    std::optional<float> spacing_m;     ///< between columns and between rows
+    std::optional<float> convergence_m; ///< 0: parallel
+    std::uint32_t width_px = 0;         ///< of a view, together with height_px
+    std::uint32_t height_px = 0;
+    float fovy_rad = 0.0F; ///< vertical
+    PlaneWish planes = PlaneWish::kWithGBuffer;
+    float max_frames_per_second = 0.0F;
+};
+
+/// What the server grants.
+struct Agreement {
+    std::uint32_t epoch = 0;
+    std::string channel;
+    scene::SceneHash scene_hash{};
+    Mode mode = Mode::kViews;
+    wire::ViewSet view_set;
+    wire::FrameLimits limits; ///< for every frame of this epoch
+};
+
+v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);
+
+/// Checks that a Configured answers `wish`: mode and grid as asked, everything within what a client can hold.
+Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish);
+
+/// Why a frame does not fit what was agreed, or nothing. Afterwards views have the agreed number and size, and source
+/// frames contain the illumination and no view is larger than the source.
+std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const Agreement& agreement);
+
+} // namespace fieldcast::client::net

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/net/clock_sync.h"
+#include "client/net/configure.h"
+#include "client/net/message_stream.h"
+#include "core/base/parallel.h"
+#include "core/wire/frame_assembler.h"
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace fieldcast::client::net {
+
+/// A complete frame that fits what was agreed, with its times on our steady clock.
+struct FrameArrived {
+    wire::ReceivedFrame frame;
+    std::int64_t first_byte_ns = 0;
+    std::int64_t last_byte_ns = 0;
+    std::int64_t decoded_ns = 0;
+    std::optional<std::int64_t> pose_sampled_ns; ///< server's time on our clock, if known
+    std::optional<std::int64_t> send_begin_ns;
+};
+
+/// A frame that could not be decoded, or was not what was agreed.
+struct FrameFailed {
+    std::string reason;
+};
+
+/// The server gave up a frame that it had begun.
+struct FrameAborted {};
+
+/// The server will not do what was asked. `is_transient`: it may later.
+struct Refused {
+    std::string message;
+    bool is_transient = false;
+};
+
+/// The server is leaving: finish, half-close, come back elsewhere or later.
+struct GoingAway {
+    std::chrono::milliseconds deadline{0};
+    std::string reason;
+};
+
+/// The last event of a session. The error's message is empty after an orderly end.
+struct Ended {
+    NetError error;
+};
+
+using Event = std::variant<Agreement, FrameArrived, FrameFailed, FrameAborted, Refused, GoingAway, Ended>;
+
+/// What became of a frame after it was decoded.
+struct FrameReport {
+    std::uint64_t frame_id = 0;
+    std::uint32_t epoch = 0;
+    bool was_superseded = false; ///< not shown: a newer one was complete
+    std::int64_t first_byte_ns = 0;
+    std::int64_t last_byte_ns = 0;
+    std::int64_t decoded_ns = 0;
+    std::int64_t rendered_ns = 0; ///< mode kScene
+    std::int64_t shown_ns = 0;
+};
+
+/// One stream with one configuration: asks, decodes, acknowledges, keeps the clocks in step. Everything that comes in
+/// is checked. `next` belongs to one thread; `report` and `half_close` may be called from any.
+class Session {
+public:
+    /// `pool` decodes; it must outlive this.
+    Session(const Connection& connection, const Wish& wish, WorkerPool& pool);
+
+    /// The next event, or nothing until `deadline`. After Ended there is nothing more.
+    std::optional<Event> next(std::chrono::steady_clock::time_point deadline);
+
+    /// Sends a second acknowledgement with the times that were unknown at the first. Returns no credit.
+    void report(const FrameReport& report);
+
+    void half_close() { stream_.half_close(); }
+    const ClockSync& clock() const { return clock_; } ///< for the thread that calls `next`
+
+    /// Silence after which a session is given up: heartbeats come twice a second, also while a slow machine renders.
+    static constexpr std::chrono::seconds kLongestSilence{20};
+
+private:
+    std::optional<Event> handle(ReceivedMessage received);
+    std::optional<Event> handle_configured(const v1::Configured& message);
+    std::optional<Event> handle_chunk(ReceivedMessage received);
+    Event failed_frame(std::uint64_t frame_id, std::uint32_t epoch, std::string reason);
+    Event arrived_frame(wire::ReceivedFrame frame, std::int64_t last_byte_ns);
+    void send_time_sync();
+    Event broken(const std::string& what);
+
+    Wish wish_;
+    MessageStream stream_;
+    wire::FrameAssembler assembler_;
+    ClockSync clock_;
+    std::optional<Agreement> agreement_;
+    std::chrono::steady_clock::time_point next_sync_;
+    std::chrono::steady_clock::time_point last_message_;
+    std::int64_t first_byte_ns_ = 0; ///< of the frame in progress
+    std::uint32_t failures_in_a_row_ = 0;
+    bool is_over_ = false;
+};
+
+} // namespace fieldcast::client::net
