@@ -33,16 +33,20 @@ void write_all(const std::filesystem::path& file, std::span<const std::byte> byt
 
 } // namespace
 
-void write_file_atomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+void replace_file(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write) {
     const std::filesystem::path part = temporary_name(file);
     try {
-        write_all(part, bytes);
+        write(part);
         std::filesystem::rename(part, file);
-    } catch (const std::system_error&) {
+    } catch (...) {
         std::error_code ignored;
         std::filesystem::remove(part, ignored);
         throw;
     }
+}
+
+void write_file_atomically(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+    replace_file(file, [&](const std::filesystem::path& part) { write_all(part, bytes); });
 }
 
 } // namespace fieldcast::image

@@ -3,12 +3,17 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 
 namespace fieldcast::image {
 
-/// Writes `bytes` to a hidden temporary file beside `file` and renames it: readers see the old file or the new one,
-/// never a part, also when the process is interrupted. Throws std::system_error.
+/// Calls `write` with the name of a hidden temporary file beside `file`, then renames that: readers see the old file or
+/// the new one, never a part, also when the process is interrupted. Removes it again if `write` throws.
+/// Throws what `write` throws, and std::system_error.
+void replace_file(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+
+/// The same for bytes that are there already. Throws std::system_error.
 void write_file_atomically(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 } // namespace fieldcast::image

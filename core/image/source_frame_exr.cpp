@@ -5,10 +5,10 @@
 #include "core/image/atomic_file.h"
 #include "core/image/packing.h"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace fieldcast::image {
 
@@ -80,12 +80,11 @@ bool write_pixels(OIIO::ImageOutput& output, const Plane& plane) {
     return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data(), sizeof(glm::vec3));
 }
 
-bool write_parts(OIIO::ImageOutput& output, const SourceFrame& frame) {
+bool write_parts(OIIO::ImageOutput& output, const std::string& name, const SourceFrame& frame) {
     std::vector<OIIO::ImageSpec> specs;
     for (const Plane& plane : frame.planes) {
         specs.push_back(part_spec(plane, frame.header));
     }
-    const std::string name = "memory.exr";
     bool good = output.open(name, static_cast<int>(specs.size()), specs.data());
     for (std::size_t part = 0; good && part < specs.size(); ++part) {
         good = part == 0 || output.open(name, specs[part], OIIO::ImageOutput::AppendSubimage);
@@ -96,22 +95,16 @@ bool write_parts(OIIO::ImageOutput& output, const SourceFrame& frame) {
 
 } // namespace
 
-std::vector<std::byte> encode_exr(const SourceFrame& frame) {
-    FC_ASSERT(!frame.planes.empty(), "a frame has planes");
-    std::vector<unsigned char> encoded;
-    OIIO::Filesystem::IOVecOutput target(encoded);
-    const auto output = OIIO::ImageOutput::create("openexr");
-    FC_ASSERT(output && output->supports("ioproxy"), "OpenImageIO encodes EXR in memory");
-    output->set_ioproxy(&target);
-    if (!write_parts(*output, frame)) {
-        throw std::runtime_error("cannot encode EXR: " + output->geterror());
-    }
-    const auto* begin = reinterpret_cast<const std::byte*>(encoded.data());
-    return {begin, begin + encoded.size()};
-}
-
 void write_exr(const std::filesystem::path& file, const SourceFrame& frame) {
-    write_file_atomically(file, encode_exr(frame));
+    FC_ASSERT(!frame.planes.empty(), "a frame has planes");
+    const auto output = OIIO::ImageOutput::create("openexr");
+    FC_ASSERT(output, "OpenImageIO writes EXR");
+    // By name, not in memory: OpenImageIO 2.4 ignores the proxy for files of several parts.
+    replace_file(file, [&](const std::filesystem::path& part) {
+        if (!write_parts(*output, part.string(), frame)) {
+            throw std::runtime_error("cannot write " + file.string() + ": " + output->geterror());
+        }
+    });
 }
 
 } // namespace fieldcast::image

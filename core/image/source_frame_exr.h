@@ -3,9 +3,7 @@
 
 #include "core/lightfield/source_frame.h"
 
-#include <cstddef>
 #include <filesystem>
-#include <vector>
 
 namespace fieldcast::image {
 
@@ -23,9 +21,8 @@ namespace fieldcast::image {
 /// Each part carries the camera that saw it, guard band included: worldToCamera and the attributes fieldcast:frame_id,
 /// scene_time_ns (decimal text, 64 bits), cut, seed, fovy_rad (of the image without band), focal_px, principal_px,
 /// guard_band_px (left, right, top, bottom).
-std::vector<std::byte> encode_exr(const SourceFrame& frame);
-
-/// As a file, complete or not at all. Throws std::system_error.
+///
+/// The file appears complete or not at all. Throws std::system_error or std::runtime_error.
 void write_exr(const std::filesystem::path& file, const SourceFrame& frame);
 
 } // namespace fieldcast::image

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/log.h"
+
+#include <functional>
+#include <gmock/gmock.h>
+#include <thread>
+#include <vector>
+
+namespace fieldcast::log {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::Not;
+
+std::string lines_of(const std::function<void()>& write) {
+    testing::internal::CaptureStderr();
+    write();
+    return testing::internal::GetCapturedStderr();
+}
+
+struct Log : testing::Test {
+    ~Log() override { set_level(Level::kInfo); }
+};
+
+TEST_F(Log, StartsWithTimeLevelAndEvent) {
+    const std::string line = lines_of([] { info("session opened", {{"peer", "10.0.0.7"}, {"views", 36}}); });
+    EXPECT_THAT(line, MatchesRegex("....-..-..T..:..:..\\.... info +session opened peer=10.0.0.7 views=36\n"));
+}
+
+TEST_F(Log, FormatsNumbersAndTruth) {
+    const std::string line = lines_of([] {
+        info("frame", {{"ms", 1.25}, {"cut", true}, {"id", 4000000000U}, {"n", -3}});
+    });
+    EXPECT_THAT(line, EndsWith(" frame ms=1.25 cut=true id=4000000000 n=-3\n"));
+}
+
+TEST_F(Log, QuotesValuesThatWouldBreakTheLine) {
+    const std::string line = lines_of([] { warn("refused", {{"name", "a b"}, {"why", "x=\"1\"\ny"}, {"empty", ""}}); });
+    EXPECT_THAT(line, EndsWith(" refused name=\"a b\" why=\"x=\\\"1\\\" y\" empty=\"\"\n"));
+}
+
+TEST_F(Log, TakesFormatCharactersLiterally) {
+    EXPECT_THAT(lines_of([] { error("{} %s {0", {{"file", "{}%n"}}); }), EndsWith(" {} %s {0 file={}%n\n"));
+}
+
+TEST_F(Log, LeavesOutWhatIsBelowTheLevel) {
+    EXPECT_EQ(lines_of([] { debug("frame"); }), "");
+    set_level(Level::kDebug);
+    EXPECT_THAT(lines_of([] { debug("frame"); }), HasSubstr("debug"));
+    set_level(Level::kError);
+    EXPECT_EQ(lines_of([] { warn("slow"); }), "");
+    EXPECT_THAT(lines_of([] { error("lost"); }), HasSubstr("error lost"));
+}
+
+TEST_F(Log, LinesOfThreadsDoNotMix) {
+    const std::string lines = lines_of([] {
+        std::vector<std::jthread> threads;
+        for (int i = 0; i < 4; ++i) {
+            threads.emplace_back([] {
+                for (int round = 0; round < 50; ++round) {
+                    info("tick", {{"round", round}});
+                }
+            });
+        }
+    });
+    EXPECT_EQ(std::ranges::count(lines, '\n'), 200);
+    std::size_t events = 0;
+    for (std::size_t at = lines.find(" tick round="); at != std::string::npos;
+         at = lines.find(" tick round=", at + 1)) {
+        ++events;
+    }
+    EXPECT_EQ(events, 200U);
+}
+
+} // namespace
+} // namespace fieldcast::log
