@@ -27,7 +27,7 @@ public:
 void check(VkResult result, const char* call);
 
 struct DeviceOptions {
-    std::string name_contains;   ///< picks the first device whose name contains this (case-insensitive); empty: best
+    std::string name_contains{}; ///< picks the first device whose name contains this (case-insensitive); empty: best
     bool validation = false;     ///< VK_LAYER_KHRONOS_validation; messages are counted and logged
     bool allow_ray_query = true; ///< false: the device is created without ray tracing extensions
 };

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/device.h"
+
+#include <gmock/gmock.h>
+
+namespace fieldcast::gpu {
+
+/// A test on the best device of this machine, with validation where the layer is installed.
+/// Skips without a device; fails if the validation layer has something to say.
+class GpuTest : public testing::Test {
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    /// One device for all tests of the binary. Only after SetUp.
+    const Device& device() const { return *device_; }
+
+private:
+    const Device* device_ = nullptr;
+    std::uint32_t messages_before_ = 0;
+};
+
+} // namespace fieldcast::gpu
