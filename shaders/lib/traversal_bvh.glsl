@@ -167,7 +167,7 @@ void traverse(inout BvhQuery query, vec3 origin, vec3 direction) {
         int texel = int(node * 3u);
         uvec4 head = texelFetch(bvh_nodes_, texel);
         uint remaining = 0u;
-        if (kTwoLevel && (head.w >> 30) != 0u) {
+        if (kTwoLevel && (head.w & kBvhPlaced) != 0u) {
             // A placed level: what is left of the top level waits below a marker.
             if ((group >> 30) != 0u) {
                 stack[height] = group;
@@ -176,7 +176,7 @@ void traverse(inout BvhQuery query, vec3 origin, vec3 direction) {
             stack[height] = kNoGroup;
             stack_t[height++] = 0.0;
             group = kNoGroup;
-            ray = enter_level(origin, direction, head.x, node);
+            ray = enter_level(origin, direction, head.w & (kBvhPlaced - 1u), node);
             continue;
         }
         uvec4 planes = texelFetch(bvh_nodes_, texel + 1);

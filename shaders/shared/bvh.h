@@ -23,12 +23,13 @@ const uint kBvhKindBits = 3u;       // per child, from kBvhKindShift on
 const uint kBvhKindShift = 18u;
 const uint kBvhExponentBits = 6u;   // per axis, from bit 0 on
 const uint kBvhExponentBias = 34u;  // cell size = 2^(exponent − bias) metres
-const uint kBvhStackSize = 32u;     // deepest tree that can be traversed, both levels together
+const uint kBvhPlaced = 1u << 30;   // shape of a node without children: kBvhPlaced | index in kBindTopLevel
+const uint kBvhStackSize = 64u;     // deepest tree that can be traversed, both levels together
 const uint kBvhMaxNodes = 1u << 24; // a stack entry holds 24 bits of node index
 
 struct BvhNode {
     vec3 origin;         // lower corner of the grid
-    uint shape;          // 3 exponents, 4 kinds
+    uint shape;          // 3 exponents, 4 kinds; or kBvhPlaced | index
     uint low_x;          // lower and upper planes in cells, 8 bits per child
     uint high_x;
     uint low_y;
