@@ -163,6 +163,10 @@ struct ScenePose {
 
 ScenePose pose_scene(const Scene& scene, std::int64_t time_ns);
 
+/// How often the animations have started over at `time_ns`; when it changes between two frames, the second is a cut.
+/// The end of a loop belongs to the loop: at time `duration_s` the last keys are shown.
+std::int64_t loop_index(const Scene& scene, std::int64_t time_ns);
+
 /// The camera called `name`; or without a name: "LightField", else the first one. Null if there is none.
 const CameraNode* find_camera(const Scene& scene, const std::string& name = {});
 

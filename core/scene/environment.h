@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/scene/gltf_loader.h"
+
+namespace fieldcast::scene {
+
+/// Reads the environment image, or takes the constant sky. Throws UserError.
+Environment read_environment(const LoadOptions& options);
+
+/// Throws UserError unless `sky` is finite and not negative.
+void check_sky(const glm::vec3& sky);
+
+} // namespace fieldcast::scene

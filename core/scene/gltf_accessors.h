@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/scene/gltf_buffer_views.h"
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace fieldcast::scene {
+
+/// Reads accessors as arrays: conversion from integers, normalisation, sparse substitution. Not thread-safe.
+/// `object` is used in messages. Throws UserError, also when a value is not finite.
+class GltfAccessors {
+public:
+    GltfAccessors(const GltfDocument& document, GltfBufferViews& views) : document_(document), views_(views) {}
+
+    std::uint64_t count(int accessor) const { return entry(accessor).count; }
+    int components(int accessor) const;
+
+    /// Values in file order, `components` per element; refused if the accessor has another number of components.
+    std::vector<float> read_floats(int accessor, int components, const std::string& object);
+    /// Scalars of type u8, u16 or u32.
+    std::vector<std::uint32_t> read_indices(int accessor, const std::string& object);
+
+    template <int N> std::vector<glm::vec<N, float>> read_vectors(int accessor, const std::string& object) {
+        const std::vector<float> values = read_floats(accessor, N, object);
+        std::vector<glm::vec<N, float>> vectors(values.size() / N);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            vectors[i / N][static_cast<int>(i % N)] = values[i];
+        }
+        return vectors;
+    }
+
+private:
+    const tinygltf::Accessor& entry(int accessor) const {
+        return document_.model.accessors[static_cast<std::size_t>(accessor)];
+    }
+    template <class T> std::vector<T> read(int accessor, const std::string& object);
+    template <class T> void read_sparse(int accessor, std::vector<T>& values, const std::string& object);
+
+    const GltfDocument& document_;
+    GltfBufferViews& views_;
+};
+
+} // namespace fieldcast::scene

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/scene/gltf_accessors.h"
+#include "core/scene/gltf_nodes.h"
+
+#include <vector>
+
+namespace fieldcast::scene {
+
+/// Channels of all animations that move nodes of the scene; marks those nodes and all below them. Throws UserError.
+std::vector<AnimationChannel> read_animations(GltfDocument& document, GltfAccessors& accessors, GltfNodes& nodes);
+
+} // namespace fieldcast::scene

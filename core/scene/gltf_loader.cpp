@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/gltf_loader.h"
+
+#include "core/base/error.h"
+#include "core/scene/bundle.h"
+#include "core/scene/environment.h"
+#include "core/scene/gltf_animations.h"
+#include "core/scene/gltf_images.h"
+#include "core/scene/gltf_lights.h"
+#include "core/scene/gltf_materials.h"
+#include "core/scene/gltf_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+namespace fieldcast::scene {
+
+namespace {
+
+double longest_animation_s(const std::vector<AnimationChannel>& channels) {
+    double duration_s = 0.0;
+    for (const AnimationChannel& channel : channels) {
+        duration_s = std::max(duration_s, static_cast<double>(channel.times_s.back()));
+    }
+    return duration_s;
+}
+
+/// Finite numbers may still multiply to infinity along the hierarchy.
+void check_transforms(const Scene& scene) {
+    const ScenePose pose = pose_scene(scene, 0);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        for (int column = 0; column < 4; ++column) {
+            const glm::vec4& c = pose.world_from_node[i][column];
+            if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z) || !std::isfinite(c.w)) {
+                refuse(scene.name, object_name("node", i, scene.nodes[i].name), "world transform is not finite");
+            }
+        }
+    }
+}
+
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+    GltfDocument document = read_gltf_document(file, options);
+    GltfBufferViews views(document);
+    GltfAccessors accessors(document, views);
+    GltfNodes nodes = read_nodes(document);
+    GltfSurfaces surfaces = read_surfaces(document);
+    GltfMeshes meshes = read_meshes(document, accessors, nodes, options.limits);
+
+    Scene scene;
+    scene.name = document.name;
+    scene.channels = read_animations(document, accessors, nodes);
+    scene.duration_s = longest_animation_s(scene.channels);
+    scene.lights = read_lights(document, nodes);
+    scene.cameras = read_cameras(document, nodes);
+    scene.nodes = std::move(nodes.nodes);
+    scene.meshes = std::move(meshes.meshes);
+    scene.instances = std::move(meshes.instances);
+    check_transforms(scene);
+    scene.environment = read_environment(options);
+    scene.images = decode_images(document, views, options.limits, surfaces.textures);
+    scene.textures = std::move(surfaces.textures);
+    scene.materials = std::move(surfaces.materials);
+    scene.warnings = document.warnings.lines();
+    scene.hash = hash_files(document.files, options);
+    return scene;
+}
+
+} // namespace
+
+Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
+    try {
+        return load(file, options);
+    } catch (const std::bad_alloc&) {
+        refuse(file.filename().string(), "file", "does not fit in memory");
+    }
+}
+
+} // namespace fieldcast::scene

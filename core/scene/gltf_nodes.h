@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/scene/gltf_document.h"
+#include "core/scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace fieldcast::scene {
+
+/// The nodes of the default scene, parents first.
+struct GltfNodes {
+    std::vector<Node> nodes;
+    std::vector<int> file_index;            ///< per node: its index in the file
+    std::vector<std::uint32_t> scene_index; ///< per node of the file: its index in `nodes`, or kNone
+};
+
+/// Refuses cycles, nodes with two parents and scenes that name a child as root.
+GltfNodes read_nodes(const GltfDocument& document);
+
+/// The node in the file; for messages and for what hangs on it.
+inline const tinygltf::Node& file_node(const GltfDocument& document, const GltfNodes& nodes, std::size_t node) {
+    return document.model.nodes[static_cast<std::size_t>(nodes.file_index[node])];
+}
+std::string node_name(const GltfDocument& document, int file_index);
+
+} // namespace fieldcast::scene

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace fieldcast::scene {
+
+/// Throws UserError "file: object: reason".
+[[noreturn]] void refuse(const std::string& file, const std::string& object, const std::string& reason);
+
+/// "node 12 'lamp'": how messages name an object. Names from files are shortened and freed of control characters.
+std::string object_name(std::string_view kind, std::size_t index, std::string_view name = {});
+
+/// Counts what a file contains but the scene ignores; one line per kind.
+class LoadWarnings {
+public:
+    /// `what` is a claim ("skins are ignored"), `unit` what is counted ("node").
+    void add(const std::string& what, const std::string& unit);
+    /// "skins are ignored (3 nodes)", in alphabetical order.
+    std::vector<std::string> lines() const;
+
+private:
+    std::map<std::pair<std::string, std::string>, std::uint64_t> counts_;
+};
+
+} // namespace fieldcast::scene
