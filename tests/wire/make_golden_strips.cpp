@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Usage: make_golden_strips FOLDER. Writes the strips that golden_test.cpp and malformed_strip_test.cpp read.
+#include "core/codec/plane_codec.h"
+
+#include "tests/wire/test_planes.h"
+
+#include <filesystem>
+#include <fstream>
+#include <span>
+
+namespace {
+
+using namespace fieldcast;
+using codec::CodecId;
+
+using Bytes = std::vector<std::byte>;
+
+void write(const std::filesystem::path& file, const Bytes& bytes) {
+    std::ofstream stream(file, std::ios::binary);
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
+    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+void write_valid(const std::filesystem::path& folder) {
+    for (const PlaneFormat format : testing::kAllFormats) {
+        const Plane plane = testing::ramp_plane(format, 33, 20);
+        const std::string name = testing::name_of(format);
+        write(folder / (name + "_raw.strip"), codec::encode_strip(plane, {3, 15}, CodecId::kRaw));
+        write(folder / (name + "_zstd.strip"), codec::encode_strip(plane, {3, 15}, CodecId::kZstdFiltered));
+    }
+}
+
+Bytes with_byte(Bytes strip, std::size_t at, std::uint8_t value) {
+    strip[at] = std::byte{value};
+    return strip;
+}
+
+/// The header of `strip`, but for its size field, and another body.
+Bytes with_body(const Bytes& strip, std::span<const std::byte> body) {
+    Bytes changed(strip.begin(), strip.begin() + codec::kStripHeaderBytes);
+    changed.insert(changed.end(), body.begin(), body.end());
+    for (unsigned i = 0; i < 4; ++i) {
+        changed[12 + i] = static_cast<std::byte>(body.size() >> (8 * i));
+    }
+    return changed;
+}
+
+void write_malformed(const std::filesystem::path& folder) {
+    const Plane plane = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
+    const Bytes zstd = codec::encode_strip(plane, {3, 15}, CodecId::kZstdFiltered);
+    const Bytes raw = codec::encode_strip(plane, {3, 15}, CodecId::kRaw);
+    const auto body = std::span(zstd).subspan(codec::kStripHeaderBytes);
+    write(folder / "empty.strip", {});
+    write(folder / "truncated_header.strip", Bytes(zstd.begin(), zstd.begin() + 15));
+    write(folder / "truncated_body.strip", Bytes(zstd.begin(), zstd.end() - 1));
+    write(folder / "version.strip", with_byte(zstd, 0, 2));
+    write(folder / "codec.strip", with_byte(zstd, 1, 9));
+    write(folder / "format.strip", with_byte(zstd, 2, 7));
+    write(folder / "other_format.strip", with_byte(zstd, 2, 5));
+    write(folder / "predictor.strip", with_byte(zstd, 3, 3));
+    write(folder / "word.strip", with_byte(zstd, 4, 2));
+    write(folder / "flags.strip", with_byte(zstd, 5, 1));
+    write(folder / "width.strip", with_byte(zstd, 6, 32));
+    write(folder / "rows.strip", with_byte(zstd, 10, 16));
+    write(folder / "raw_filter.strip", with_byte(raw, 3, 1));
+    write(folder / "raw_short.strip", with_body(raw, std::span(raw).subspan(16, 100)));
+    Bytes twice(body.begin(), body.end());
+    twice.insert(twice.end(), body.begin(), body.end());
+    write(folder / "two_frames.strip", with_body(zstd, twice));
+    write(folder / "cut_frame.strip", with_body(zstd, body.first(body.size() - 1)));
+    // zstd frame header: magic, descriptor with 8 bytes of content size and one segment, 1 TiB
+    const Bytes bomb{std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F}, std::byte{0xFD}, std::byte{0xE0},
+                     std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0},
+                     std::byte{1},    std::byte{0},    std::byte{0},    std::byte{1},    std::byte{0},
+                     std::byte{0}};
+    write(folder / "huge_content.strip", with_body(zstd, bomb));
+    const Plane larger = testing::ramp_plane(PlaneFormat::kRgb8, 33, 16);
+    const Bytes other = codec::encode_strip(larger, {0, 16}, CodecId::kZstdFiltered);
+    write(folder / "other_content.strip", with_body(zstd, std::span(other).subspan(codec::kStripHeaderBytes)));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        return 2;
+    }
+    const std::filesystem::path folder = argv[1];
+    std::filesystem::create_directories(folder / "malformed");
+    write_valid(folder);
+    write_malformed(folder / "malformed");
+    return 0;
+}

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/codec/plane_codec.h"
+
+#include "tests/wire/test_planes.h"
+
+#include <gtest/gtest.h>
+#include <tuple>
+
+namespace fieldcast::codec {
+namespace {
+
+using namespace fieldcast::testing;
+
+using Case = std::tuple<PlaneFormat, CodecId>;
+
+class EveryCodec : public ::testing::TestWithParam<Case> {
+protected:
+    PlaneFormat format() const { return std::get<0>(GetParam()); }
+    CodecId codec() const { return std::get<1>(GetParam()); }
+
+    void expect_round_trip(const Plane& plane, const std::string& what) const {
+        Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
+        for (const RowBand band : strip_bands(plane.height_px)) {
+            const auto strip = encode_strip(plane, band, codec());
+            EXPECT_LE(strip.size(), max_strip_bytes(plane.format, plane.width_px, band.row_count)) << what;
+            const auto result = decode_strip(strip, band, decoded);
+            ASSERT_TRUE(result) << what << ": " << result.error().message;
+        }
+        EXPECT_TRUE(decoded == plane) << what;
+    }
+};
+
+TEST_P(EveryCodec, RoundTripsEverySize) {
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{1, 1},   {1, 7},    {2, 1},    {3, 2},
+                                                                     {17, 33}, {64, 120}, {63, 121}, {31, 479}};
+    for (const auto& [width, height] : sizes) {
+        const std::string size = std::to_string(width) + "x" + std::to_string(height);
+        expect_round_trip(random_plane(format(), width, height), "random " + size);
+        expect_round_trip(ramp_plane(format(), width, height), "ramp " + size);
+        expect_round_trip(empty_plane(format(), width, height), "constant " + size);
+    }
+}
+
+TEST_P(EveryCodec, RoundTripsTheWidestRow) {
+    expect_round_trip(ramp_plane(format(), kMaxPlaneSide, 2), "widest");
+}
+
+TEST_P(EveryCodec, StripsAreIndependent) {
+    const Plane plane = ramp_plane(format(), 40, 300);
+    const RowBand band{120, 120};
+    Plane decoded = empty_plane(format(), 40, 300);
+    ASSERT_TRUE(decode_strip(encode_strip(plane, band, codec()), band, decoded)); // the others never arrive
+    const std::size_t row_bytes = 40 * bytes_per_pixel(format());
+    for (std::size_t i = 0; i < plane.bytes.size(); ++i) {
+        const bool is_inside = i / row_bytes >= 120 && i / row_bytes < 240;
+        ASSERT_EQ(decoded.bytes[i], is_inside ? plane.bytes[i] : std::byte{0}) << i;
+    }
+}
+
+TEST_P(EveryCodec, TakesAnyNumberOfRows) {
+    const Plane plane = ramp_plane(format(), 9, 50);
+    for (const RowBand band : {RowBand{0, 50}, RowBand{3, 1}, RowBand{49, 1}, RowBand{7, 31}}) {
+        Plane decoded = empty_plane(format(), 9, 50);
+        EXPECT_TRUE(decode_strip(encode_strip(plane, band, codec()), band, decoded));
+    }
+}
+
+TEST_P(EveryCodec, SameInputSameBytes) {
+    const Plane plane = ramp_plane(format(), 50, 60);
+    EXPECT_EQ(encode_strip(plane, {0, 60}, codec()), encode_strip(plane, {0, 60}, codec()));
+}
+
+std::string case_name(const ::testing::TestParamInfo<Case>& info) {
+    return name_of(std::get<0>(info.param)) + (std::get<1>(info.param) == CodecId::kRaw ? "_raw" : "_zstd");
+}
+
+INSTANTIATE_TEST_SUITE_P(PlaneCodec, EveryCodec,
+                         ::testing::Combine(::testing::ValuesIn(kAllFormats),
+                                            ::testing::Values(CodecId::kRaw, CodecId::kZstdFiltered)),
+                         case_name);
+
+TEST(PlaneCodec, CompressesSmoothPlanes) {
+    for (const PlaneFormat format : kAllFormats) {
+        const Plane plane = ramp_plane(format, 320, 120);
+        const auto strip = encode_strip(plane, {0, 120}, CodecId::kZstdFiltered);
+        // One bit of noise per pixel and byte remains; ids are not predicted, so only their ramps repeat.
+        EXPECT_LT(strip.size(), plane.bytes.size() * 4 / 5) << name_of(format);
+    }
+}
+
+TEST(PlaneCodec, FallsBackToRawForNoise) {
+    const Plane plane = random_plane(PlaneFormat::kRgb8, 40, 40);
+    const auto strip = encode_strip(plane, {0, 40}, CodecId::kZstdFiltered);
+    EXPECT_EQ(strip.size(), max_strip_bytes(PlaneFormat::kRgb8, 40, 40));
+    EXPECT_EQ(strip[1], static_cast<std::byte>(CodecId::kRaw));
+}
+
+TEST(PlaneCodec, StripBandsCoverEveryRow) {
+    EXPECT_EQ(strip_bands(720).size(), 6U);
+    EXPECT_EQ(strip_bands(1), (std::vector<RowBand>{{0, 1}}));
+    EXPECT_EQ(strip_bands(121), (std::vector<RowBand>{{0, 120}, {120, 1}}));
+    EXPECT_TRUE(strip_bands(0).empty());
+}
+
+TEST(PlaneCodec, RefusesToAllocateOversizedPlanes) {
+    const auto allocate = [](std::uint32_t width, std::uint32_t height) {
+        return allocate_plane(PlaneSemantic::kDepth, PlaneFormat::kF32, width, height).has_value();
+    };
+    EXPECT_TRUE(allocate(16, 16));
+    EXPECT_FALSE(allocate(0, 16));
+    EXPECT_FALSE(allocate(16, 0));
+    EXPECT_FALSE(allocate(kMaxPlaneSide + 1, 1));
+    EXPECT_FALSE(allocate(kMaxPlaneSide, kMaxPlaneSide)); // 1 GiB
+    EXPECT_FALSE(allocate(0xFFFFFFFF, 0xFFFFFFFF));
+    EXPECT_FALSE(allocate_plane(PlaneSemantic::kDepth, static_cast<PlaneFormat>(0), 4, 4));
+}
+
+TEST(PlaneCodec, KnowsItsNumbers) {
+    EXPECT_EQ(codec_from_number(1), CodecId::kRaw);
+    EXPECT_EQ(codec_from_number(2), CodecId::kZstdFiltered);
+    for (const std::uint64_t number : {0ULL, 3ULL, 255ULL, 257ULL, 1ULL << 40}) {
+        EXPECT_FALSE(codec_from_number(number)) << number;
+    }
+}
+
+} // namespace
+} // namespace fieldcast::codec

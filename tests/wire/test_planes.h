@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lightfield/plane.h"
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace fieldcast::testing {
+
+inline constexpr std::array kAllFormats{PlaneFormat::kR11G11B10F, PlaneFormat::kF32, PlaneFormat::kOct2x16,
+                                        PlaneFormat::kU32,        PlaneFormat::kRg8, PlaneFormat::kRgb8};
+
+inline PlaneSemantic semantic_of(PlaneFormat format) {
+    switch (format) {
+    case PlaneFormat::kR11G11B10F:
+        return PlaneSemantic::kDiffuse;
+    case PlaneFormat::kF32:
+        return PlaneSemantic::kDepth;
+    case PlaneFormat::kOct2x16:
+        return PlaneSemantic::kNormal;
+    case PlaneFormat::kU32:
+        return PlaneSemantic::kId;
+    case PlaneFormat::kRg8:
+        return PlaneSemantic::kMaterial;
+    case PlaneFormat::kRgb8:
+        return PlaneSemantic::kColour;
+    }
+    return PlaneSemantic::kColour;
+}
+
+inline std::string name_of(PlaneFormat format) {
+    switch (format) {
+    case PlaneFormat::kR11G11B10F:
+        return "r11g11b10f";
+    case PlaneFormat::kF32:
+        return "f32";
+    case PlaneFormat::kOct2x16:
+        return "oct2x16";
+    case PlaneFormat::kU32:
+        return "u32";
+    case PlaneFormat::kRg8:
+        return "rg8";
+    case PlaneFormat::kRgb8:
+        return "rgb8";
+    }
+    return "";
+}
+
+inline Plane empty_plane(PlaneFormat format, std::uint32_t width_px, std::uint32_t height_px) {
+    const auto size = static_cast<std::size_t>(plane_bytes(format, width_px, height_px));
+    return {semantic_of(format), format, width_px, height_px, std::vector<std::byte>(size)};
+}
+
+inline Plane random_plane(PlaneFormat format, std::uint32_t width_px, std::uint32_t height_px, std::uint32_t seed = 1) {
+    Plane plane = empty_plane(format, width_px, height_px);
+    std::mt19937 random(seed);
+    for (std::byte& byte : plane.bytes) {
+        byte = static_cast<std::byte>(random());
+    }
+    return plane;
+}
+
+/// Compressible, and the same on every machine for ever: byte b of pixel (x, y) is 3x + 5y + 7b + (0 or 1).
+inline Plane ramp_plane(PlaneFormat format, std::uint32_t width_px, std::uint32_t height_px, std::uint32_t seed = 0) {
+    Plane plane = empty_plane(format, width_px, height_px);
+    const std::uint32_t pixel_bytes = bytes_per_pixel(format);
+    for (std::size_t i = 0; i < plane.bytes.size(); ++i) {
+        const auto pixel = static_cast<std::uint32_t>(i / pixel_bytes);
+        const auto b = static_cast<std::uint32_t>(i % pixel_bytes);
+        const std::uint32_t noise = ((pixel + seed) * 2654435761U >> 16) & 1;
+        plane.bytes[i] = static_cast<std::byte>(3 * (pixel % width_px) + 5 * (pixel / width_px) + 7 * b + noise);
+    }
+    return plane;
+}
+
+} // namespace fieldcast::testing
