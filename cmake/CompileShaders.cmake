@@ -1,11 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 # fieldcast_shaders(TARGET KERNELS … [SOURCE_DIR DIR]): each NAME.comp of DIR (default: shaders/) becomes a validated
 # DIR/NAME.spv.h in the build tree, included as "shaders/NAME.spv.h", with the words of the kernel in `NAME_spv`.
+# Kernels after TRACED trace rays: they are compiled once per traversal, as NAME_bvh and NAME_rayquery.
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
+# One kernel under one name; uses the variables of fieldcast_shaders.
+macro(fieldcast_shader kernel name)
+    set(source ${ARG_SOURCE_DIR}/${kernel}.comp)
+    set(spirv ${output_dir}/${name}.spv)
+    # The dependency file names ${spirv}, so that comes first in OUTPUT.
+    add_custom_command(
+        OUTPUT ${spirv} ${spirv}.h
+        COMMAND ${compile} ${ARGN} --depfile ${spirv}.d -o ${spirv} ${source}
+        COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}
+        COMMAND ${compile} ${ARGN} --vn ${name}_spv -o ${spirv}.h ${source}
+        DEPENDS ${source}
+        DEPFILE ${spirv}.d
+        COMMENT "Compiling kernel ${name}" VERBATIM)
+    list(APPEND headers ${spirv}.h)
+endmacro()
+
 function(fieldcast_shaders target)
-    cmake_parse_arguments(ARG "" "SOURCE_DIR" "KERNELS" ${ARGN})
+    cmake_parse_arguments(ARG "" "SOURCE_DIR" "KERNELS;TRACED" ${ARGN})
     if(NOT ARG_SOURCE_DIR)
         set(ARG_SOURCE_DIR ${PROJECT_SOURCE_DIR}/shaders)
     endif()
@@ -18,20 +35,13 @@ function(fieldcast_shaders target)
     endif()
     set(compile ${GLSLANG} --quiet --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR} -I${PROJECT_SOURCE_DIR}/shaders)
     set(headers)
+    file(MAKE_DIRECTORY ${output_dir})
     foreach(kernel ${ARG_KERNELS})
-        set(source ${ARG_SOURCE_DIR}/${kernel}.comp)
-        set(spirv ${output_dir}/${kernel}.spv)
-        file(MAKE_DIRECTORY ${output_dir})
-        # The dependency file names ${spirv}, so that comes first in OUTPUT.
-        add_custom_command(
-            OUTPUT ${spirv} ${spirv}.h
-            COMMAND ${compile} --depfile ${spirv}.d -o ${spirv} ${source}
-            COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}
-            COMMAND ${compile} --vn ${kernel}_spv -o ${spirv}.h ${source}
-            DEPENDS ${source}
-            DEPFILE ${spirv}.d
-            COMMENT "Compiling kernel ${kernel}" VERBATIM)
-        list(APPEND headers ${spirv}.h)
+        fieldcast_shader(${kernel} ${kernel})
+    endforeach()
+    foreach(kernel ${ARG_TRACED})
+        fieldcast_shader(${kernel} ${kernel}_bvh)
+        fieldcast_shader(${kernel} ${kernel}_rayquery -DTRAVERSAL_RAY_QUERY)
     endforeach()
     add_custom_target(${target}_spirv DEPENDS ${headers})
     add_library(${target} INTERFACE)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/bindings.h"
+#include "core/gpu/kernel.h"
 #include "core/scene/scene.h"
 
 #include <memory>
@@ -34,8 +34,9 @@ public:
     Traversal traversal() const;
     const gpu::BindingLayout& layout() const;
     const gpu::BindingSet& bindings() const;
-    bool has_alpha() const; ///< some material is MASK or BLEND
-    bool has_blend() const;
+    bool has_blend() const; ///< some material is BLEND
+    /// For every kernel that includes lib/scene_data.glsl.
+    std::vector<gpu::Specialisation> specialisations() const;
     std::uint64_t device_bytes() const; ///< of all buffers and textures
 
 private:

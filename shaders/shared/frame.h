@@ -26,5 +26,195 @@ struct Visibility {
 };
 SHARED_BUFFER(VisibilityBuffer, Visibility);
 
+// visibility.comp: what every pixel of `view_count` cameras of equal size sees.
+struct VisibilityParams {
+    CameraBuffer cameras;
+    VisibilityBuffer visibility; // out: view_count × width × height
+    VisibilityBuffer layers;     // out: two BLEND surfaces per pixel in front of it, nearest first; only with has_blend
+    uint width;
+    uint height;
+    uint view_count;
+    uint unused;
+};
+
+const uint kFlagNextEventEstimation = 1;
+const uint kFlagTemporal = 2;
+const uint kFlagAces = 4;
+
+// trace_source.comp: path traces every pixel of the source.
+struct TraceSourceParams {
+    CameraBuffer camera;
+    VisibilityBuffer visibility;
+    Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
+    Vec4Buffer specular;         // out
+    UintBuffer invalid_samples;  // counter
+    uint width;
+    uint height;
+    uint seed;
+    uint first_sample;           // number of the first sample in the pixels' sequences
+    uint samples_per_pixel;
+    uint max_bounces;
+    uint flags;
+    float max_indirect;
+};
+
+// source_surfaces.comp: G-buffer planes of the source from its visibility.
+struct SourceSurfacesParams {
+    CameraBuffer camera;
+    VisibilityBuffer visibility;
+    FloatBuffer depth;    // out: wire planes
+    UintBuffer normal;
+    UintBuffer id;
+    UintBuffer material;
+    Uvec4Buffer geometry; // out: GeometryTexel
+    uint width;
+    uint height;
+};
+
+// What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness | metallic.
+struct GeometryTexel {
+    float depth;
+    uint normal;
+    uint id;
+    uint material;
+};
+
+// temporal.comp: blends the frame with the reprojected history. Reads set 1: kTemporal….
+struct TemporalParams {
+    CameraBuffer cameras;        // current, previous
+    VisibilityBuffer visibility;
+    Vec4Buffer diffuse;          // in: noisy; out: accumulated, a = variance of luminance
+    Vec4Buffer specular;
+    Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
+    FloatBuffer history_length;  // out: frames
+    uint width;
+    uint height;
+    uint flags;                  // kFlagTemporal: there is a history
+    float alpha;
+};
+const uint kTemporalGeometry = 0;          // GeometryTexel, current
+const uint kTemporalPreviousGeometry = 1;  // GeometryTexel
+const uint kTemporalPreviousDiffuse = 2;   // rgb
+const uint kTemporalPreviousSpecular = 3;
+const uint kTemporalPreviousMoments = 4;
+const uint kTemporalPreviousLength = 5;    // R32F
+const uint kTemporalDiffuse = 6;           // noisy input
+const uint kTemporalSpecular = 7;
+
+// svgf_variance.comp and svgf_atrous.comp. Read set 1: kFilter….
+struct FilterParams {
+    CameraBuffer camera;
+    Vec4Buffer diffuse;  // out: rgb, a = variance
+    Vec4Buffer specular;
+    uint width;
+    uint height;
+    uint step;           // pixels between taps
+    float sigma_luminance;
+    float sigma_depth;
+    float sigma_normal;
+};
+const uint kFilterGeometry = 0;
+const uint kFilterDiffuse = 1;
+const uint kFilterSpecular = 2;
+const uint kFilterMoments = 3;
+const uint kFilterLength = 4;
+
+// pack_source.comp: illumination into wire precision.
+struct PackParams {
+    Vec4Buffer diffuse_in;
+    Vec4Buffer specular_in;
+    UintBuffer diffuse;  // out: R11G11B10F
+    UintBuffer specular;
+    uint pixel_count;
+};
+
+// interleave_source.comp: wire planes into the texels that reproject.comp reads.
+struct InterleaveParams {
+    UintBuffer diffuse;
+    UintBuffer specular;
+    FloatBuffer depth;
+    UintBuffer normal;
+    UintBuffer id;
+    UintBuffer material;
+    Uvec4Buffer geometry;     // out: GeometryTexel
+    Uvec2Buffer illumination; // out: diffuse, specular
+    uint pixel_count;
+};
+
+// What one target view needs besides its camera.
+struct ViewRecord {
+    uint seed;                // hash of frame seed and lattice position
+    uint unused;
+};
+SHARED_BUFFER(ViewBuffer, ViewRecord);
+
+// Counters of a batch of views: hole and layer lists, then kDiscard… per view.
+const uint kCounterHoles = 0;           // followed by the group counts of the indirect dispatch
+const uint kCounterHoleGroups = 1;      // x, y, z
+const uint kCounterLayers = 4;
+const uint kCounterLayerGroups = 5;     // x, y, z
+const uint kCounterInvalidSamples = 8;
+const uint kCounterDiscards = 16;       // 4 per view
+const uint kDiscardFrustum = 0;
+const uint kDiscardId = 1;
+const uint kDiscardPlane = 2;
+const uint kDiscardNormal = 3;
+
+struct ReprojectSettings {
+    float plane_footprints;
+    float tangential_footprints;
+    float min_normal_cos;
+    float min_weight;
+};
+
+// reproject.comp: every pixel of every view. Reads set 1: kReproject….
+struct ReprojectParams {
+    CameraBuffer cameras;        // the source (guard band included), then the views
+    VisibilityBuffer visibility; // of the views
+    VisibilityBuffer layers;
+    Uvec2Buffer radiance;        // out: linear radiance, half floats
+    UintBuffer holes;            // out: pixel indices over all views
+    UintBuffer layer_pixels;     // out
+    UintBuffer counters;
+    uint width;
+    uint height;
+    uint view_count;
+    ReprojectSettings settings;
+};
+const uint kReprojectGeometry = 0;     // RGBA32UI GeometryTexel
+const uint kReprojectIllumination = 1; // RG32UI: diffuse, specular (R11G11B10F)
+
+// finish_list.comp: group counts of an indirect dispatch from a list's length.
+struct FinishListParams {
+    UintBuffer counters;
+    uint group_size;
+};
+
+// trace_holes.comp and trace_layers.comp: path traces the listed pixels.
+struct TraceListParams {
+    CameraBuffer cameras;        // the source, then the views
+    VisibilityBuffer visibility;
+    VisibilityBuffer layers;
+    Uvec2Buffer radiance;
+    UintBuffer list;
+    UintBuffer counters;
+    ViewBuffer views;
+    uint width;
+    uint height;
+    uint samples_per_pixel;
+    uint max_bounces;
+    uint flags;
+    float max_indirect;
+};
+
+// tone_map.comp: linear radiance to packed RGB8; one invocation makes four pixels (three words).
+struct ToneMapParams {
+    Uvec2Buffer radiance;
+    UintBuffer rgb8;             // out
+    uint pixel_count;            // of all views, a multiple of 4 per view
+    uint flags;
+    float exposure;
+};
+
 SHARED_END
 #endif

@@ -24,8 +24,15 @@ const uint kBindSceneInfo = 11;       // SceneInfo, one
 const uint kBindEnvironment = 12;     // sampler2DArray with one layer
 const uint kBindTextures = 13;        // sampler2DArray[kTextureArrays]
 const uint kBindAcceleration = 14;    // top level; only in ray query kernels
+const uint kBindGgxAlbedo = 15;       // RGBA32F: directional albedo of GGX, kGgxAlbedoSize² of (A, B): E = F0·A + B
 
+const uint kGgxAlbedoSize = 32; // columns: n·v, rows: roughness; centres at (i + 0.5) / size
 const uint kTextureArrays = 8;  // size classes × {sRGB, linear}; unused ones hold one white texel
+
+// Specialisation constants of kernels that look at surfaces; those of the traversal are in shared/bvh.h.
+const uint kSpecialiseTextureArrays = 101; // bit k: array k is used by the scene
+const uint kSpecialiseBlend = 103;         // bool: some material is BLEND
+
 const uint kNoIndex = 0xFFFFFFFFu;
 const uint kNoInstance = 0xFFFFFFFFu; // visibility: nothing was hit
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/recorder.h"
+#include "core/lightfield/source_frame.h"
+#include "shaders/shared/frame.h"
+
+namespace fieldcast::render {
+
+/// Flags of a frame's settings for kernels.
+inline std::uint32_t kernel_flags(const RenderSettings& settings) {
+    return (settings.next_event_estimation ? shared::kFlagNextEventEstimation : 0U) |
+           (settings.tone_map == ToneMap::kAces ? shared::kFlagAces : 0U);
+}
+
+/// Luminance above which one indirect contribution is cut: relative to the frame's mean, which exposure brings to 0.18.
+inline float max_indirect(const RenderSettings& settings) {
+    return settings.indirect_clamp * 0.18F / settings.exposure;
+}
+
+/// Same hash as lib/random.glsl.
+std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b);
+
+/// Seed of the pixels of one view: of the frame and of the lattice position, so that every view has its own noise.
+std::uint32_t view_seed(const FrameHeader& header, LatticePosition position);
+
+/// Appends the stage times of the recorder's last submission.
+void append_times(const gpu::Recorder& recorder, std::vector<StageTime>& times);
+
+} // namespace fieldcast::render

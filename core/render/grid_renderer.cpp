@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/grid_renderer.h"
+
+#include "core/render/camera_record.h"
+#include "core/render/frame_parameters.h"
+#include "core/render/kernels.h"
+#include "core/render/visibility_depth.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+namespace fieldcast::render {
+
+namespace {
+
+constexpr std::uint32_t kGroup = 64;
+
+std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of lib/views.glsl
+    return (request.width_px * request.height_px + 3U) & ~3U;
+}
+
+} // namespace
+
+struct GridRenderer::State {
+    State(const gpu::Device& d, const scene::GpuScene& s);
+
+    void resize(const SourcePlanes& source, const ViewRequest& next);
+    void upload_cameras(const SourcePlanes& source);
+    void record_visibility();
+    void record_interleave(const SourcePlanes& source);
+    void record_reproject(const FrameHeader& header);
+    void record_lists(const FrameHeader& header);
+    void record_tone_map(const FrameHeader& header);
+    Views download(const FrameHeader& header) const;
+    DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
+    std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
+
+    const gpu::Device& device;
+    const scene::GpuScene& scene;
+    gpu::Recorder recorder;
+    gpu::BindingLayout source_layout;
+    gpu::Kernel visibility_kernel;
+    gpu::Kernel interleave_kernel;
+    gpu::Kernel reproject_kernel;
+    gpu::Kernel finish_kernel;
+    gpu::Kernel holes_kernel;
+    gpu::Kernel layers_kernel;
+    gpu::Kernel tone_map_kernel;
+
+    ViewRequest request;
+    std::vector<Camera> view_cameras;
+    std::uint32_t source_pixels = 0;
+    std::uint64_t view_pixels = 0; ///< over all views, padded
+    std::uint64_t invalid_samples = 0;
+
+    gpu::Buffer geometry; ///< of the source, interleaved
+    gpu::Buffer illumination;
+    gpu::TexelView geometry_view;
+    gpu::TexelView illumination_view;
+    gpu::BindingSet source_set;
+
+    gpu::Buffer cameras; ///< source, views
+    gpu::Buffer views;   ///< ViewRecord
+    gpu::Buffer counters;
+    gpu::Buffer visibility;
+    gpu::Buffer layers;
+    gpu::Buffer radiance;
+    gpu::Buffer holes;
+    gpu::Buffer layer_pixels;
+    gpu::Buffer rgb8;
+};
+
+GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
+    : device(d), scene(s), recorder(d),
+      source_layout(d, {{shared::kReprojectGeometry, gpu::BindingType::kTexelBuffer, 1},
+                        {shared::kReprojectIllumination, gpu::BindingType::kTexelBuffer, 1}}),
+      visibility_kernel(make_scene_kernel(d, s, KernelId::kVisibility, sizeof(shared::VisibilityParams))),
+      interleave_kernel(make_plain_kernel(d, KernelId::kInterleaveSource, sizeof(shared::InterleaveParams))),
+      reproject_kernel(
+          make_scene_kernel(d, s, KernelId::kReproject, sizeof(shared::ReprojectParams), {&source_layout})),
+      finish_kernel(make_plain_kernel(d, KernelId::kFinishList, sizeof(shared::FinishListParams))),
+      holes_kernel(make_scene_kernel(d, s, KernelId::kTraceHoles, sizeof(shared::TraceListParams))),
+      layers_kernel(make_scene_kernel(d, s, KernelId::kTraceLayers, sizeof(shared::TraceListParams))),
+      tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))) {}
+
+void GridRenderer::State::resize(const SourcePlanes& source, const ViewRequest& next) {
+    request = next;
+    if (source.pixel_count() != source_pixels) {
+        source_pixels = source.pixel_count();
+        geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_pixels) * 16);
+        illumination = gpu::Buffer(device, static_cast<std::uint64_t>(source_pixels) * 8);
+        geometry_view = gpu::TexelView(device, geometry, VK_FORMAT_R32G32B32A32_UINT);
+        illumination_view = gpu::TexelView(device, illumination, VK_FORMAT_R32G32_UINT);
+        source_set = gpu::BindingSet(device, source_layout);
+        source_set.set(shared::kReprojectGeometry, geometry_view);
+        source_set.set(shared::kReprojectIllumination, illumination_view);
+    }
+    cameras = gpu::Buffer(device, (view_count() + 1ULL) * sizeof(shared::CameraRecord));
+    views = gpu::Buffer(device, view_count() * sizeof(shared::ViewRecord));
+    counters = gpu::Buffer(device, (shared::kCounterDiscards + 4ULL * view_count()) * 4);
+    const std::uint64_t pixels = static_cast<std::uint64_t>(padded_pixels(request)) * view_count();
+    if (pixels <= view_pixels) {
+        return;
+    }
+    view_pixels = pixels;
+    visibility = gpu::Buffer(device, pixels * 8);
+    layers = gpu::Buffer(device, scene.has_blend() ? pixels * 16 : 16);
+    radiance = gpu::Buffer(device, pixels * 8);
+    holes = gpu::Buffer(device, pixels * 4);
+    layer_pixels = gpu::Buffer(device, scene.has_blend() ? pixels * 4 : 16);
+    rgb8 = gpu::Buffer(device, pixels * 3);
+}
+
+void GridRenderer::State::upload_cameras(const SourcePlanes& source) {
+    const FrameHeader& header = source.header();
+    std::vector<shared::CameraRecord> camera_records{make_camera_record(source.camera())};
+    std::vector<shared::ViewRecord> view_records;
+    view_cameras.clear();
+    for (const LatticePosition position : request.positions) {
+        view_cameras.push_back(view_camera(header.source, request.geometry, position, request.fovy_rad,
+                                           request.width_px, request.height_px));
+        camera_records.push_back(make_camera_record(view_cameras.back()));
+        view_records.push_back({view_seed(header, position), 0});
+    }
+    gpu::write_buffer(device, cameras, std::as_bytes(std::span(camera_records)));
+    gpu::write_buffer(device, views, std::as_bytes(std::span(view_records)));
+}
+
+void GridRenderer::State::record_visibility() {
+    shared::VisibilityParams params{};
+    params.cameras = cameras.address() + sizeof(shared::CameraRecord);
+    params.visibility = visibility.address();
+    params.layers = layers.address();
+    params.width = request.width_px;
+    params.height = request.height_px;
+    params.view_count = view_count();
+    recorder.stage("views_visibility");
+    recorder.dispatch(visibility_kernel, {&scene.bindings()}, params,
+                      {gpu::groups_for(params.width, 8), gpu::groups_for(params.height, 8), params.view_count});
+}
+
+void GridRenderer::State::record_interleave(const SourcePlanes& source) {
+    shared::InterleaveParams params{};
+    params.diffuse = source.plane(PlaneSemantic::kDiffuse).address();
+    params.specular = source.plane(PlaneSemantic::kSpecular).address();
+    params.depth = source.plane(PlaneSemantic::kDepth).address();
+    params.normal = source.plane(PlaneSemantic::kNormal).address();
+    params.id = source.plane(PlaneSemantic::kId).address();
+    params.material = source.plane(PlaneSemantic::kMaterial).address();
+    params.geometry = geometry.address();
+    params.illumination = illumination.address();
+    params.pixel_count = source.pixel_count();
+    recorder.stage("interleave");
+    recorder.dispatch(interleave_kernel, {}, params, {gpu::groups_for(params.pixel_count, kGroup), 1, 1});
+    recorder.barrier();
+}
+
+void GridRenderer::State::record_reproject(const FrameHeader& header) {
+    const ReprojectionThresholds& thresholds = header.settings.reprojection;
+    shared::ReprojectParams params{};
+    params.cameras = cameras.address();
+    params.visibility = visibility.address();
+    params.layers = layers.address();
+    params.radiance = radiance.address();
+    params.holes = holes.address();
+    params.layer_pixels = layer_pixels.address();
+    params.counters = counters.address();
+    params.width = request.width_px;
+    params.height = request.height_px;
+    params.view_count = view_count();
+    params.settings = {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
+                       thresholds.min_weight};
+    recorder.stage("reproject");
+    recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
+                      {gpu::groups_for(params.width, kGroup), params.height, params.view_count});
+    recorder.barrier();
+    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), kGroup}, {1, 1, 1});
+    recorder.barrier();
+}
+
+// One compacted list over all views and one indirect dispatch, for holes and then for BLEND surfaces.
+void GridRenderer::State::record_lists(const FrameHeader& header) {
+    shared::TraceListParams params{};
+    params.cameras = cameras.address();
+    params.visibility = visibility.address();
+    params.layers = layers.address();
+    params.radiance = radiance.address();
+    params.list = holes.address();
+    params.counters = counters.address();
+    params.views = views.address();
+    params.width = request.width_px;
+    params.height = request.height_px;
+    params.samples_per_pixel = header.settings.samples_per_pixel;
+    params.max_bounces = header.settings.max_bounces;
+    params.flags = kernel_flags(header.settings);
+    params.max_indirect = max_indirect(header.settings);
+    recorder.stage("holes");
+    recorder.dispatch_indirect(holes_kernel, {&scene.bindings()}, params, counters, shared::kCounterHoleGroups * 4);
+    recorder.barrier();
+    if (scene.has_blend()) {
+        params.list = layer_pixels.address();
+        recorder.stage("layers");
+        recorder.dispatch_indirect(layers_kernel, {&scene.bindings()}, params, counters,
+                                   shared::kCounterLayerGroups * 4);
+        recorder.barrier();
+    }
+}
+
+void GridRenderer::State::record_tone_map(const FrameHeader& header) {
+    shared::ToneMapParams params{};
+    params.radiance = radiance.address();
+    params.rgb8 = rgb8.address();
+    params.pixel_count = padded_pixels(request) * view_count();
+    params.flags = kernel_flags(header.settings);
+    params.exposure = header.settings.exposure;
+    recorder.stage("tone_map");
+    recorder.dispatch(tone_map_kernel, {}, params, {gpu::groups_for(params.pixel_count / 4, kGroup), 1, 1});
+    recorder.barrier();
+}
+
+DiscardCounts GridRenderer::State::discards(const std::vector<std::uint32_t>& values, std::size_t view) const {
+    const std::size_t base = shared::kCounterDiscards + 4 * view;
+    return {values[base + shared::kDiscardFrustum], values[base + shared::kDiscardId],
+            values[base + shared::kDiscardPlane], values[base + shared::kDiscardNormal]};
+}
+
+Views GridRenderer::State::download(const FrameHeader& header) const {
+    const auto counts = gpu::read_buffer_as<std::uint32_t>(device, counters, counters.size_bytes() / 4);
+    Views result{header, {}};
+    result.views.reserve(view_count());
+    for (std::size_t i = 0; i < request.positions.size(); ++i) {
+        Plane image{PlaneSemantic::kColour, PlaneFormat::kRgb8, request.width_px, request.height_px, {}};
+        image.bytes.resize(plane_bytes(image.format, image.width_px, image.height_px));
+        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * padded_pixels(request) * i);
+        result.views.push_back({request.positions[i], std::move(image), discards(counts, i)});
+    }
+    append_times(recorder, result.header.render_times);
+    return result;
+}
+
+GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
+    : state_(std::make_unique<State>(device, scene)) {}
+
+GridRenderer::~GridRenderer() = default;
+
+Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& request) {
+    FC_ASSERT(!request.positions.empty() && request.width_px > 0 && request.height_px > 0, "nothing to render");
+    State& s = *state_;
+    s.resize(source, request);
+    s.upload_cameras(source);
+
+    s.recorder.fill(s.counters, 0);
+    s.recorder.barrier();
+    s.record_visibility();
+    s.record_interleave(source);
+    s.record_reproject(source.header());
+    s.record_lists(source.header());
+    s.record_tone_map(source.header());
+    s.recorder.submit();
+
+    const auto invalid = gpu::read_buffer_as<std::uint32_t>(s.device, s.counters, 1, shared::kCounterInvalidSamples * 4);
+    s.invalid_samples += invalid.front();
+    return s.download(source.header());
+}
+
+LinearView GridRenderer::linear_view(std::size_t index) const {
+    const State& s = *state_;
+    FC_ASSERT(index < s.request.positions.size(), "no such view");
+    const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
+    const auto texels = gpu::read_buffer_as<glm::uvec2>(s.device, s.radiance, count,
+                                                        8ULL * padded_pixels(s.request) * index);
+    LinearView view{s.request.width_px, s.request.height_px, {}};
+    view.pixels.reserve(count);
+    for (const glm::uvec2 texel : texels) {
+        const glm::vec2 rg = glm::unpackHalf2x16(texel.x);
+        view.pixels.emplace_back(rg.x, rg.y, glm::unpackHalf2x16(texel.y).x);
+    }
+    return view;
+}
+
+std::vector<float> GridRenderer::view_depth(std::size_t index) const {
+    const State& s = *state_;
+    FC_ASSERT(index < s.request.positions.size(), "no such view");
+    const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
+    const auto seen = gpu::read_buffer_as<glm::uvec2>(s.device, s.visibility, count,
+                                                      8ULL * padded_pixels(s.request) * index);
+    return depth_of_visibility(s.scene, s.view_cameras[index], seen);
+}
+
+std::uint64_t GridRenderer::invalid_sample_count() const {
+    return state_->invalid_samples;
+}
+
+} // namespace fieldcast::render

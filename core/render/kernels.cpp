@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/kernels.h"
+
+#include "shaders/finish_list.spv.h"
+#include "shaders/interleave_source.spv.h"
+#include "shaders/pack_source.spv.h"
+#include "shaders/reproject.spv.h"
+#include "shaders/source_surfaces.spv.h"
+#include "shaders/svgf_atrous.spv.h"
+#include "shaders/svgf_variance.spv.h"
+#include "shaders/temporal.spv.h"
+#include "shaders/tone_map.spv.h"
+#include "shaders/trace_holes_bvh.spv.h"
+#include "shaders/trace_holes_rayquery.spv.h"
+#include "shaders/trace_layers_bvh.spv.h"
+#include "shaders/trace_layers_rayquery.spv.h"
+#include "shaders/trace_source_bvh.spv.h"
+#include "shaders/trace_source_rayquery.spv.h"
+#include "shaders/visibility_bvh.spv.h"
+#include "shaders/visibility_rayquery.spv.h"
+
+#include "core/base/error.h"
+
+namespace fieldcast::render {
+
+gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
+    const bool bvh = traversal == scene::Traversal::kBvh;
+    const auto traced = [bvh](const char* name, std::span<const std::uint32_t> own,
+                              std::span<const std::uint32_t> query) {
+        return gpu::KernelCode{name, bvh ? own : query};
+    };
+    switch (id) {
+    case KernelId::kFinishList:
+        return {"finish_list", finish_list_spv};
+    case KernelId::kInterleaveSource:
+        return {"interleave_source", interleave_source_spv};
+    case KernelId::kPackSource:
+        return {"pack_source", pack_source_spv};
+    case KernelId::kReproject:
+        return {"reproject", reproject_spv};
+    case KernelId::kSourceSurfaces:
+        return {"source_surfaces", source_surfaces_spv};
+    case KernelId::kSvgfAtrous:
+        return {"svgf_atrous", svgf_atrous_spv};
+    case KernelId::kSvgfVariance:
+        return {"svgf_variance", svgf_variance_spv};
+    case KernelId::kTemporal:
+        return {"temporal", temporal_spv};
+    case KernelId::kToneMap:
+        return {"tone_map", tone_map_spv};
+    case KernelId::kTraceHoles:
+        return traced("trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv);
+    case KernelId::kTraceLayers:
+        return traced("trace_layers", trace_layers_bvh_spv, trace_layers_rayquery_spv);
+    case KernelId::kTraceSource:
+        return traced("trace_source", trace_source_bvh_spv, trace_source_rayquery_spv);
+    case KernelId::kVisibility:
+        return traced("visibility", visibility_bvh_spv, visibility_rayquery_spv);
+    }
+    FC_ASSERT(false, "unknown kernel");
+    return {};
+}
+
+gpu::Kernel make_scene_kernel(const gpu::Device& device, const scene::GpuScene& scene, KernelId id,
+                              std::uint32_t push_bytes, const std::vector<const gpu::BindingLayout*>& sets) {
+    gpu::KernelLayout layout{{&scene.layout()}, push_bytes};
+    layout.sets.insert(layout.sets.end(), sets.begin(), sets.end());
+    return {device, kernel_code(id, scene.traversal()), layout, scene.specialisations()};
+}
+
+gpu::Kernel make_plain_kernel(const gpu::Device& device, KernelId id, std::uint32_t push_bytes,
+                              const std::vector<const gpu::BindingLayout*>& sets) {
+    return {device, kernel_code(id, scene::Traversal::kBvh), {sets, push_bytes}};
+}
+
+} // namespace fieldcast::render

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/source_planes.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fieldcast::render {
+
+namespace {
+
+std::size_t index_of(PlaneSemantic semantic) {
+    const auto found = std::ranges::find(kSourceSemantics, semantic);
+    FC_ASSERT(found != kSourceSemantics.end(), "not a plane of a source frame");
+    return static_cast<std::size_t>(found - kSourceSemantics.begin());
+}
+
+} // namespace
+
+PlaneFormat source_format(PlaneSemantic semantic) {
+    switch (semantic) {
+    case PlaneSemantic::kDiffuse:
+    case PlaneSemantic::kSpecular:
+        return PlaneFormat::kR11G11B10F;
+    case PlaneSemantic::kDepth:
+        return PlaneFormat::kF32;
+    case PlaneSemantic::kNormal:
+        return PlaneFormat::kOct2x16;
+    case PlaneSemantic::kId:
+        return PlaneFormat::kU32;
+    case PlaneSemantic::kMaterial:
+        return PlaneFormat::kRg8;
+    case PlaneSemantic::kColour:
+        return PlaneFormat::kRgb8;
+    }
+    return PlaneFormat::kU32;
+}
+
+SourcePlanes::SourcePlanes(const gpu::Device& device) : device_(device) {}
+
+void SourcePlanes::resize(const FrameHeader& header) {
+    header_ = header;
+    const Camera widened = camera();
+    const std::uint32_t count = widened.width_px * widened.height_px;
+    if (count == pixel_count_) {
+        return;
+    }
+    pixel_count_ = count;
+    for (gpu::Buffer& plane : planes_) {
+        plane = gpu::Buffer(device_, static_cast<std::uint64_t>(count) * 4);
+    }
+}
+
+SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const {
+    SourceFrame frame{header_, {}};
+    const Camera widened = camera();
+    for (const PlaneSemantic semantic : wanted) {
+        Plane plane{semantic, source_format(semantic), widened.width_px, widened.height_px, {}};
+        plane.bytes.resize(static_cast<std::size_t>(pixel_count_) * 4);
+        gpu::read_buffer(device_, planes_[index_of(semantic)], plane.bytes);
+        if (plane.format == PlaneFormat::kRg8) { // from the low half of each word
+            for (std::size_t i = 0; i < pixel_count_; ++i) {
+                plane.bytes[2 * i] = plane.bytes[4 * i];
+                plane.bytes[2 * i + 1] = plane.bytes[4 * i + 1];
+            }
+            plane.bytes.resize(static_cast<std::size_t>(pixel_count_) * 2);
+        }
+        frame.planes.push_back(std::move(plane));
+    }
+    return frame;
+}
+
+Decoded<bool> SourcePlanes::upload(const SourceFrame& frame) {
+    const Camera widened = with_guard_band(frame.header.source, frame.header.guard_band);
+    for (const Plane& plane : frame.planes) {
+        const bool fits = std::ranges::find(kSourceSemantics, plane.semantic) != kSourceSemantics.end() &&
+                          plane.format == source_format(plane.semantic) && plane.width_px == widened.width_px &&
+                          plane.height_px == widened.height_px &&
+                          plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
+        if (!fits) {
+            return decode_error("plane " + std::to_string(static_cast<int>(plane.semantic)) +
+                                ": format or size is not that of the source");
+        }
+    }
+    resize(frame.header);
+    std::vector<std::uint32_t> words;
+    for (const Plane& plane : frame.planes) {
+        const gpu::Buffer& buffer = planes_[index_of(plane.semantic)];
+        if (plane.format != PlaneFormat::kRg8) {
+            gpu::write_buffer(device_, buffer, plane.bytes);
+            continue;
+        }
+        words.resize(pixel_count_);
+        for (std::size_t i = 0; i < pixel_count_; ++i) {
+            words[i] = std::to_integer<std::uint32_t>(plane.bytes[2 * i]) |
+                       std::to_integer<std::uint32_t>(plane.bytes[2 * i + 1]) << 8;
+        }
+        gpu::write_buffer(device_, buffer, std::as_bytes(std::span(words)));
+    }
+    return true;
+}
+
+const gpu::Buffer& SourcePlanes::plane(PlaneSemantic semantic) const {
+    return planes_[index_of(semantic)];
+}
+
+} // namespace fieldcast::render

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/source_renderer.h"
+
+#include "core/render/camera_record.h"
+#include "core/render/frame_parameters.h"
+#include "core/render/kernels.h"
+#include "core/render/source_surfaces.h"
+#include "core/render/svgf.h"
+
+#include <optional>
+
+namespace fieldcast::render {
+
+struct SourceRenderer::State {
+    State(const gpu::Device& d, const scene::GpuScene& s)
+        : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), svgf(d, s),
+          trace(make_scene_kernel(d, s, KernelId::kTraceSource, sizeof(shared::TraceSourceParams))),
+          pack(make_plain_kernel(d, KernelId::kPackSource, sizeof(shared::PackParams))),
+          cameras(d, 2 * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
+        recorder.fill(invalid_samples, 0);
+        recorder.submit();
+    }
+
+    bool has_history(const FrameHeader& header) const;
+    void upload_cameras();
+    void record_trace();
+    void record_pack();
+
+    const gpu::Device& device;
+    const scene::GpuScene& scene;
+    gpu::Recorder recorder;
+    SourcePlanes planes;
+    SourceSurfaces surfaces;
+    Svgf svgf;
+    gpu::Kernel trace;
+    gpu::Kernel pack;
+    gpu::Buffer cameras; ///< current, previous
+    gpu::Buffer invalid_samples;
+    std::optional<Camera> previous;
+};
+
+bool SourceRenderer::State::has_history(const FrameHeader& header) const {
+    const Camera now = with_guard_band(header.source, header.guard_band);
+    return previous && !header.cut && previous->width_px == now.width_px && previous->height_px == now.height_px;
+}
+
+void SourceRenderer::State::upload_cameras() {
+    const Camera now = planes.camera();
+    const std::array records{make_camera_record(now), make_camera_record(previous.value_or(now))};
+    gpu::write_buffer(device, cameras, std::as_bytes(std::span(records)));
+}
+
+void SourceRenderer::State::record_trace() {
+    const FrameHeader& header = planes.header();
+    const Camera camera = planes.camera();
+    shared::TraceSourceParams params{};
+    params.camera = cameras.address();
+    params.visibility = surfaces.visibility().address();
+    params.diffuse = svgf.noisy_diffuse().address();
+    params.specular = svgf.noisy_specular().address();
+    params.invalid_samples = invalid_samples.address();
+    params.width = camera.width_px;
+    params.height = camera.height_px;
+    params.seed = header.seed;
+    params.first_sample = static_cast<std::uint32_t>(header.frame_id) * header.settings.samples_per_pixel;
+    params.samples_per_pixel = header.settings.samples_per_pixel;
+    params.max_bounces = header.settings.max_bounces;
+    params.flags = kernel_flags(header.settings);
+    params.max_indirect = max_indirect(header.settings);
+    recorder.stage("source_trace");
+    recorder.dispatch(trace, {&scene.bindings()}, params,
+                      {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), 1});
+    recorder.barrier();
+}
+
+void SourceRenderer::State::record_pack() {
+    shared::PackParams params{};
+    params.diffuse_in = svgf.diffuse().address();
+    params.specular_in = svgf.specular().address();
+    params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
+    params.specular = planes.plane(PlaneSemantic::kSpecular).address();
+    params.pixel_count = planes.pixel_count();
+    recorder.stage("pack");
+    recorder.dispatch(pack, {}, params, {gpu::groups_for(params.pixel_count, 64), 1, 1});
+    recorder.barrier();
+}
+
+SourceRenderer::SourceRenderer(const gpu::Device& device, const scene::GpuScene& scene)
+    : state_(std::make_unique<State>(device, scene)) {}
+
+SourceRenderer::~SourceRenderer() = default;
+
+const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
+    State& s = *state_;
+    FrameHeader timed = header;
+    timed.render_times.clear();
+    const bool has_history = s.has_history(header);
+    s.planes.resize(timed);
+    s.svgf.resize(s.planes.pixel_count());
+    s.upload_cameras();
+
+    s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.svgf.geometry());
+    s.record_trace();
+    const Camera camera = s.planes.camera();
+    s.svgf.record(s.recorder, {s.cameras.address(), s.surfaces.visibility().address(), camera.width_px,
+                               camera.height_px, has_history, header.settings});
+    s.record_pack();
+    s.recorder.submit();
+
+    append_times(s.recorder, timed.render_times);
+    s.planes.resize(timed);
+    s.svgf.swap();
+    s.previous = camera;
+    return s.planes;
+}
+
+std::uint64_t SourceRenderer::invalid_sample_count() const {
+    return gpu::read_buffer_as<std::uint32_t>(state_->device, state_->invalid_samples, 1).front();
+}
+
+struct SurfacePlanesRenderer::State {
+    State(const gpu::Device& d, const scene::GpuScene& s)
+        : device(d), recorder(d), surfaces(d, s), camera(d, sizeof(shared::CameraRecord)) {}
+
+    const gpu::Device& device;
+    gpu::Recorder recorder;
+    SourceSurfaces surfaces;
+    gpu::Buffer camera;
+    gpu::Buffer geometry;
+};
+
+SurfacePlanesRenderer::SurfacePlanesRenderer(const gpu::Device& device, const scene::GpuScene& scene)
+    : state_(std::make_unique<State>(device, scene)) {}
+
+SurfacePlanesRenderer::~SurfacePlanesRenderer() = default;
+
+void SurfacePlanesRenderer::render(SourcePlanes& planes) {
+    State& s = *state_;
+    const std::uint64_t geometry_bytes = static_cast<std::uint64_t>(planes.pixel_count()) * 16;
+    if (s.geometry.size_bytes() < geometry_bytes) {
+        s.geometry = gpu::Buffer(s.device, geometry_bytes);
+    }
+    const shared::CameraRecord record = make_camera_record(planes.camera());
+    gpu::write_buffer(s.device, s.camera, std::as_bytes(std::span(&record, 1)));
+    s.surfaces.record(s.recorder, planes, s.camera.address(), s.geometry);
+    s.recorder.submit();
+}
+
+} // namespace fieldcast::render

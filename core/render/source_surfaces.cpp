@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/source_surfaces.h"
+
+#include "core/render/kernels.h"
+#include "shaders/shared/frame.h"
+
+namespace fieldcast::render {
+
+SourceSurfaces::SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene)
+    : device_(device), scene_(scene),
+      trace_(make_scene_kernel(device, scene, KernelId::kVisibility, sizeof(shared::VisibilityParams))),
+      surfaces_(make_scene_kernel(device, scene, KernelId::kSourceSurfaces, sizeof(shared::SourceSurfacesParams))) {}
+
+void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t camera,
+                            const gpu::Buffer& geometry) {
+    const Camera widened = planes.camera();
+    const std::uint64_t padded = (static_cast<std::uint64_t>(planes.pixel_count()) + 3) / 4 * 4;
+    if (visibility_.size_bytes() < padded * 8) {
+        visibility_ = gpu::Buffer(device_, padded * 8);
+        layers_ = gpu::Buffer(device_, scene_.has_blend() ? padded * 16 : 16);
+    }
+    shared::VisibilityParams visible{};
+    visible.cameras = camera;
+    visible.visibility = visibility_.address();
+    visible.layers = layers_.address();
+    visible.width = widened.width_px;
+    visible.height = widened.height_px;
+    visible.view_count = 1;
+    recorder.stage("source_visibility");
+    recorder.dispatch(trace_, {&scene_.bindings()}, visible,
+                      {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), 1});
+    recorder.barrier();
+
+    shared::SourceSurfacesParams params{};
+    params.camera = camera;
+    params.visibility = visibility_.address();
+    params.depth = planes.plane(PlaneSemantic::kDepth).address();
+    params.normal = planes.plane(PlaneSemantic::kNormal).address();
+    params.id = planes.plane(PlaneSemantic::kId).address();
+    params.material = planes.plane(PlaneSemantic::kMaterial).address();
+    params.geometry = geometry.address();
+    params.width = widened.width_px;
+    params.height = widened.height_px;
+    recorder.stage("source_surfaces");
+    recorder.dispatch(surfaces_, {&scene_.bindings()}, params, {gpu::groups_for(planes.pixel_count(), 64), 1, 1});
+    recorder.barrier();
+}
+
+} // namespace fieldcast::render

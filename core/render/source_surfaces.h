@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/recorder.h"
+#include "core/render/source_planes.h"
+#include "core/scene/gpu_scene.h"
+
+namespace fieldcast::render {
+
+/// Visibility of the source and the G-buffer planes computed from it. Used by the server for its source frames and by
+/// clients that rebuild the planes themselves: the same kernels, hence the same bits.
+class SourceSurfaces {
+public:
+    SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene);
+
+    /// Records visibility and surfaces for `planes` (sized for its header). `camera` is the device address of the
+    /// source's CameraRecord; `geometry` a buffer of GeometryTexel.
+    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t camera, const gpu::Buffer& geometry);
+
+    const gpu::Buffer& visibility() const { return visibility_; }
+
+private:
+    const gpu::Device& device_;
+    const scene::GpuScene& scene_;
+    gpu::Kernel trace_;
+    gpu::Kernel surfaces_;
+    gpu::Buffer visibility_;
+    gpu::Buffer layers_; ///< BLEND surfaces; unused here, but the kernel writes them
+};
+
+} // namespace fieldcast::render

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/svgf.h"
+
+#include "core/render/kernels.h"
+
+namespace fieldcast::render {
+
+namespace {
+
+constexpr std::uint32_t kGroup = 64;
+constexpr std::uint32_t kLevels = 5;
+constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+std::vector<gpu::Binding> texel_bindings(std::uint32_t count) {
+    std::vector<gpu::Binding> bindings;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        bindings.push_back({i, gpu::BindingType::kTexelBuffer, 1});
+    }
+    return bindings;
+}
+
+} // namespace
+
+void SourceHistory::resize(const gpu::Device& device, std::uint32_t pixel_count) {
+    const std::uint64_t count = pixel_count;
+    geometry = gpu::Buffer(device, count * 16);
+    diffuse = gpu::Buffer(device, count * 16);
+    specular = gpu::Buffer(device, count * 16);
+    moments = gpu::Buffer(device, count * 16);
+    length = gpu::Buffer(device, count * 4);
+    geometry_view = gpu::TexelView(device, geometry, VK_FORMAT_R32G32B32A32_UINT);
+    diffuse_view = gpu::TexelView(device, diffuse, kFloats);
+    specular_view = gpu::TexelView(device, specular, kFloats);
+    moments_view = gpu::TexelView(device, moments, kFloats);
+    length_view = gpu::TexelView(device, length, VK_FORMAT_R32_SFLOAT);
+}
+
+Svgf::Svgf(const gpu::Device& device, const scene::GpuScene& scene)
+    : device_(device), scene_(scene), temporal_layout_(device, texel_bindings(8)),
+      filter_layout_(device, texel_bindings(5)),
+      temporal_(make_scene_kernel(device, scene, KernelId::kTemporal, sizeof(shared::TemporalParams),
+                                  {&temporal_layout_})),
+      variance_(make_plain_kernel(device, KernelId::kSvgfVariance, sizeof(shared::FilterParams), {&filter_layout_})),
+      atrous_(make_plain_kernel(device, KernelId::kSvgfAtrous, sizeof(shared::FilterParams), {&filter_layout_})) {}
+
+void Svgf::resize(std::uint32_t pixel_count) {
+    if (pixel_count == pixel_count_) {
+        return;
+    }
+    pixel_count_ = pixel_count;
+    for (SourceHistory& history : history_) {
+        history.resize(device_, pixel_count);
+    }
+    const auto make = [&](gpu::Buffer& buffer, gpu::TexelView& view) {
+        buffer = gpu::Buffer(device_, static_cast<std::uint64_t>(pixel_count) * 16);
+        view = gpu::TexelView(device_, buffer, kFloats);
+    };
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        make(noisy_[i], noisy_views_[i]);
+        make(scratch_[0][i], scratch_views_[0][i]);
+        make(scratch_[1][i], scratch_views_[1][i]);
+    }
+    bind();
+}
+
+void Svgf::bind() {
+    for (std::uint32_t current = 0; current < 2; ++current) {
+        const SourceHistory& now = history_[current];
+        const SourceHistory& before = history_[1 - current];
+        gpu::BindingSet& temporal = temporal_sets_[current] = gpu::BindingSet(device_, temporal_layout_);
+        temporal.set(shared::kTemporalGeometry, now.geometry_view);
+        temporal.set(shared::kTemporalPreviousGeometry, before.geometry_view);
+        temporal.set(shared::kTemporalPreviousDiffuse, before.diffuse_view);
+        temporal.set(shared::kTemporalPreviousSpecular, before.specular_view);
+        temporal.set(shared::kTemporalPreviousMoments, before.moments_view);
+        temporal.set(shared::kTemporalPreviousLength, before.length_view);
+        temporal.set(shared::kTemporalDiffuse, noisy_views_[0]);
+        temporal.set(shared::kTemporalSpecular, noisy_views_[1]);
+        for (std::uint32_t input = 0; input < 3; ++input) {
+            gpu::BindingSet& filter = filter_sets_[current][input] = gpu::BindingSet(device_, filter_layout_);
+            filter.set(shared::kFilterGeometry, now.geometry_view);
+            filter.set(shared::kFilterMoments, now.moments_view);
+            filter.set(shared::kFilterLength, now.length_view);
+            filter.set(shared::kFilterDiffuse, input == 0 ? now.diffuse_view : scratch_views_[input - 1][0]);
+            filter.set(shared::kFilterSpecular, input == 0 ? now.specular_view : scratch_views_[input - 1][1]);
+        }
+    }
+}
+
+void Svgf::record(gpu::Recorder& recorder, const Frame& frame) {
+    result_diffuse_ = &noisy_[0];
+    result_specular_ = &noisy_[1];
+    const bool filters = frame.settings.denoiser == Denoiser::kSvgf;
+    if (frame.settings.temporal_accumulation || filters) {
+        record_temporal(recorder, frame);
+    }
+    if (filters) {
+        record_filter(recorder, frame);
+    }
+}
+
+void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
+    const SourceHistory& now = history_[current_];
+    shared::TemporalParams params{};
+    params.cameras = frame.cameras;
+    params.visibility = frame.visibility;
+    params.diffuse = now.diffuse.address();
+    params.specular = now.specular.address();
+    params.moments = now.moments.address();
+    params.history_length = now.length.address();
+    params.width = frame.width;
+    params.height = frame.height;
+    params.flags = frame.has_history && frame.settings.temporal_accumulation ? shared::kFlagTemporal : 0;
+    params.alpha = frame.settings.temporal_alpha;
+    recorder.stage("temporal");
+    recorder.dispatch(temporal_, {&scene_.bindings(), &temporal_sets_[current_]}, params,
+                      {gpu::groups_for(pixel_count_, kGroup), 1, 1});
+    recorder.barrier();
+    result_diffuse_ = &now.diffuse;
+    result_specular_ = &now.specular;
+}
+
+// Variance estimate, then five levels; the first level's colour replaces the history (SVGF, section 4.3).
+void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
+    shared::FilterParams params{};
+    params.camera = frame.cameras;
+    params.width = frame.width;
+    params.height = frame.height;
+    params.sigma_luminance = 4.0F; // the paper's values
+    params.sigma_depth = 1.0F;
+    params.sigma_normal = 128.0F;
+    const gpu::GroupCount groups{gpu::groups_for(pixel_count_, kGroup), 1, 1};
+    recorder.stage("denoise");
+    std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
+    const auto run = [&](const gpu::Kernel& kernel, std::uint32_t output) {
+        params.diffuse = scratch_[output - 1][0].address();
+        params.specular = scratch_[output - 1][1].address();
+        recorder.dispatch(kernel, {&filter_sets_[current_][input]}, params, groups);
+        recorder.barrier();
+        input = output;
+    };
+    run(variance_, 1);
+    for (std::uint32_t level = 0; level < kLevels; ++level) {
+        params.step = 1U << level;
+        run(atrous_, input == 1 ? 2 : 1);
+        if (level == 0) {
+            const std::uint64_t bytes = static_cast<std::uint64_t>(pixel_count_) * 16;
+            recorder.copy(scratch_[input - 1][0], history_[current_].diffuse, bytes);
+            recorder.copy(scratch_[input - 1][1], history_[current_].specular, bytes);
+        }
+    }
+    result_diffuse_ = &scratch_[input - 1][0];
+    result_specular_ = &scratch_[input - 1][1];
+}
+
+} // namespace fieldcast::render

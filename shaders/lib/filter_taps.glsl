@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What SVGF's filters share: their inputs and the edge-stopping weights.
+// Follows: C. Schied et al. Spatiotemporal Variance-Guided Filtering. HPG 2017, section 4.4, equations 3 to 5.
+// Differs: the depth term compares with the plane through the centre pixel's neighbourhood by its depth gradient, made
+// from the normal instead of screen space derivatives, which a ray traced G-buffer does not have.
+#ifndef FIELDCAST_LIB_FILTER_TAPS
+#define FIELDCAST_LIB_FILTER_TAPS
+#include "lib/camera.glsl"
+#include "lib/packing.glsl"
+
+layout(set = 0, binding = kFilterGeometry) uniform usamplerBuffer geometry_;
+layout(set = 0, binding = kFilterDiffuse) uniform samplerBuffer diffuse_;
+layout(set = 0, binding = kFilterSpecular) uniform samplerBuffer specular_;
+layout(set = 0, binding = kFilterMoments) uniform samplerBuffer moments_;
+layout(set = 0, binding = kFilterLength) uniform samplerBuffer length_;
+layout(push_constant, scalar) uniform Push { FilterParams params; };
+
+float luminance(vec3 c) {
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+struct Centre {
+    ivec2 at;
+    float depth;
+    vec2 depth_gradient; // per pixel
+    vec3 normal;
+    uint id;
+};
+
+// Depth of a plane through the surface point changes across the image by this much per pixel.
+vec2 depth_gradient(CameraRecord camera, ivec2 at, float depth, vec3 normal) {
+    vec3 ray = camera_direction(camera, vec2(at) + 0.5);
+    float along = dot(normal, ray);
+    along = abs(along) < 0.05 ? (along < 0.0 ? -0.05 : 0.05) : along;
+    return vec2(-dot(normal, camera.right), dot(normal, camera.up)) * (depth / (along * camera.focal_px));
+}
+
+Centre load_centre(ivec2 at, uvec4 geometry) {
+    Centre c;
+    c.at = at;
+    c.depth = uintBitsToFloat(geometry.x);
+    c.normal = unpack_normal(geometry.y);
+    c.id = geometry.z;
+    c.depth_gradient = depth_gradient(params.camera.at[0], at, c.depth, c.normal);
+    return c;
+}
+
+// Weight of a tap from geometry alone; 0 for other instances, materials and sky.
+float geometry_weight(Centre c, ivec2 offset, uvec4 geometry) {
+    float expected = c.depth + dot(c.depth_gradient, vec2(offset));
+    float tolerance = params.sigma_depth * (dot(abs(c.depth_gradient), abs(vec2(offset))) + 1e-3 * c.depth);
+    float off_plane = abs(uintBitsToFloat(geometry.x) - expected) / max(tolerance, 1e-12);
+    float cos_normals = max(dot(c.normal, unpack_normal(geometry.y)), 0.0);
+    return geometry.z == c.id ? exp(-off_plane) * pow(cos_normals, params.sigma_normal) : 0.0;
+}
+
+bool is_inside(ivec2 at) {
+    return all(greaterThanEqual(at, ivec2(0))) && at.x < int(params.width) && at.y < int(params.height);
+}
+
+#endif

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unidirectional path tracing with next event estimation from a surface that is already known.
+// MIS: E. Veach, L. Guibas. Optimally Combining Sampling Techniques for Monte Carlo Rendering. 1995 (power heuristic).
+// Ray offsets: C. Wächter, N. Binder. A Fast and Robust Method for Avoiding Self-Intersection. Ray Tracing Gems, 2019.
+#ifndef FIELDCAST_LIB_PATH
+#define FIELDCAST_LIB_PATH
+#include "lib/lights.glsl"
+#include "lib/traversal.glsl"
+
+struct PathSettings {
+    uint max_bounces;
+    bool next_event_estimation;
+    float max_indirect; // luminance of one indirect contribution; 0: no limit
+};
+
+// Light arriving at the first surface, demodulated: diffuse without the diffuse colour, specular over
+// specular_modulation().
+struct Illumination {
+    vec3 diffuse;
+    vec3 specular;
+};
+
+vec3 offset_origin(vec3 p, vec3 normal) {
+    ivec3 steps = ivec3(256.0 * normal);
+    vec3 moved = intBitsToFloat(floatBitsToInt(p) + ivec3(p.x < 0.0 ? -steps.x : steps.x, p.y < 0.0 ? -steps.y : steps.y,
+                                                          p.z < 0.0 ? -steps.z : steps.z));
+    vec3 near_zero = p + normal * (1.0 / 65536.0);
+    return vec3(abs(p.x) < 1.0 / 32.0 ? near_zero.x : moved.x, abs(p.y) < 1.0 / 32.0 ? near_zero.y : moved.y,
+                abs(p.z) < 1.0 / 32.0 ? near_zero.z : moved.z);
+}
+
+float power_heuristic(float a, float b) {
+    float a2 = a * a;
+    return a2 / max(a2 + b * b, 1e-30);
+}
+
+// Directions must lie on the same side of the shading and the geometric normal.
+bool is_consistent(Surface s, vec3 direction, float local_z) {
+    return dot(s.geometric_normal, direction) * local_z > 0.0;
+}
+
+vec3 path_origin(Surface s, vec3 direction) {
+    bool above = dot(s.geometric_normal, direction) > 0.0;
+    return offset_origin(s.position, above ? s.geometric_normal : -s.geometric_normal);
+}
+
+// Light of one next event estimation sample, without the surface's reflection; zero if it is blocked.
+vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, float choice, vec2 u, out BsdfValue value) {
+    LightSample light = sample_light(info, s.position, s.normal, choice, u);
+    vec3 local = light.direction * b.world_from_local;
+    value = eval_bsdf(b, local);
+    bool useful = is_consistent(s, light.direction, local.z) && luminance(light.weight) > 0.0 &&
+                  luminance(value.diffuse + value.specular) > 0.0;
+    if (!useful) {
+        return vec3(0.0);
+    }
+    float mis = light.pdf == kDeltaLight ? 1.0 : power_heuristic(light.pdf, value.pdf);
+    float visible = trace_transmittance(path_origin(s, light.direction), light.direction, light.distance_m * 0.9999);
+    return light.weight * (mis * visible);
+}
+
+// Emission met by a sampled direction, weighted against next event estimation.
+vec3 emitted_light(SceneInfo info, PathSettings settings, Surface s, vec3 direction, float distance_m, float pdf) {
+    if (!settings.next_event_estimation || s.emitter == kNoIndex) {
+        return s.emission;
+    }
+    float cos_light = abs(dot(s.geometric_normal, direction));
+    float light_pdf = info.probability_emitter * pdf_emitter(s.emitter, distance_m, cos_light);
+    return s.emission * power_heuristic(pdf, light_pdf);
+}
+
+vec3 environment_light(SceneInfo info, PathSettings settings, vec3 normal, vec3 direction, float pdf) {
+    vec3 radiance = environment_radiance(info, direction);
+    if (!settings.next_event_estimation || info.probability_environment == 0.0) {
+        return radiance;
+    }
+    float light_pdf = info.probability_environment * pdf_environment(info, normal, direction);
+    return radiance * power_heuristic(pdf, light_pdf);
+}
+
+vec3 limit_luminance(vec3 c, float limit) {
+    float l = luminance(c);
+    return limit > 0.0 && l > limit ? c * (limit / l) : c;
+}
+
+// One path from `s`, seen along unit `direction`; `cone_width_m` and `cone_spread` for texture detail.
+Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 direction, float cone_width_m,
+                        float cone_spread, inout Sampler rng) {
+    Illumination result = Illumination(vec3(0.0), vec3(0.0));
+    Bsdf b = make_bsdf(s, direction);
+    vec3 modulation = specular_modulation(b);
+    vec3 first_diffuse = vec3(0.0); // of the first vertex's sampled direction: value over density
+    vec3 first_specular = vec3(0.0);
+    vec3 throughput = vec3(1.0);    // from the second vertex on
+    vec3 indirect = vec3(0.0);
+
+    for (uint bounce = 0u; bounce < settings.max_bounces; ++bounce) {
+        vec2 choices = next_pair(rng);
+        vec2 light_u = next_pair(rng);
+        vec2 bsdf_u = next_pair(rng);
+        if (settings.next_event_estimation) {
+            BsdfValue value;
+            vec3 light = sample_direct(info, s, b, choices.x, light_u, value);
+            if (bounce == 0u) {
+                result.diffuse += light * value.diffuse;
+                result.specular += light * value.specular / modulation;
+            } else {
+                indirect += throughput * light * (value.diffuse * b.diffuse_colour + value.specular);
+            }
+        }
+        vec3 local = sample_bsdf(b, choices.y, bsdf_u);
+        BsdfValue value = eval_bsdf(b, local);
+        direction = normalize(b.world_from_local * local);
+        if (!(value.pdf > 0.0) || !is_consistent(s, direction, local.z)) {
+            break;
+        }
+        if (bounce == 0u) {
+            first_diffuse = value.diffuse / value.pdf;
+            first_specular = value.specular / (value.pdf * modulation);
+        } else {
+            throughput *= (value.diffuse * b.diffuse_colour + value.specular) / value.pdf;
+        }
+        if (bounce >= 3u) { // Russian roulette
+            float survival = clamp(max(throughput.r, max(throughput.g, throughput.b)), 0.05, 0.95);
+            if (next_float(rng) >= survival) {
+                break;
+            }
+            throughput /= survival;
+        }
+        vec3 normal = s.normal;
+        Hit hit = trace_closest(path_origin(s, direction), direction, 0.0, 1e30, kTraceStochastic, rng.state);
+        vec3 arriving;
+        bool escaped = hit.instance == kNoInstance;
+        if (escaped) {
+            arriving = environment_light(info, settings, normal, direction, value.pdf);
+        } else {
+            cone_spread += 0.1 * sqrt(b.alpha);
+            cone_width_m += cone_spread * hit.t;
+            s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width_m);
+            arriving = emitted_light(info, settings, s, direction, hit.t, value.pdf);
+        }
+        if (bounce == 0u) {
+            result.diffuse += first_diffuse * arriving;
+            result.specular += first_specular * arriving;
+        } else {
+            indirect += throughput * arriving;
+        }
+        if (escaped) {
+            break;
+        }
+        b = make_bsdf(s, direction);
+    }
+    indirect = limit_luminance(indirect, settings.max_indirect);
+    result.diffuse += first_diffuse * indirect;
+    result.specular += first_specular * indirect;
+    return result;
+}
+
+bool is_finite(vec3 c) {
+    return !(any(isnan(c)) || any(isinf(c)));
+}
+
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers: hashed Owen-scrambled Sobol pairs for the first dimensions of a path, PCG beyond.
+// Follows: B. Burley. Practical Hash-based Owen Scrambling. JCGT 9(4), 2020. The scrambling hash is
+// that of Laine and Karras with the constants of N. Vegdahl (2021).
+#ifndef FIELDCAST_LIB_RANDOM
+#define FIELDCAST_LIB_RANDOM
+
+// M. Jarzynski, M. Olano. Hash Functions for GPU Rendering. JCGT 9(3), 2020: pcg.
+uint pcg_hash(uint value) {
+    uint state = value * 747796405u + 2891336453u;
+    uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+uint hash_combine(uint a, uint b) {
+    return pcg_hash(a ^ (b + 0x9E3779B9u + (a << 6) + (a >> 2)));
+}
+
+// Uniform in [0, 1) from the 24 high bits.
+float unit_float(uint bits) {
+    return float(bits >> 8) * (1.0 / 16777216.0);
+}
+
+// One path's supply of random numbers.
+struct Sampler {
+    uint seed;      // of this pixel
+    uint index;     // sample number in the sequence
+    uint dimension; // counts pairs
+    uint state;     // PCG, for dimensions beyond the Sobol ones
+};
+
+const uint kSobolPairs = 16u;
+const uint kSobolIndexMask = 0xFFFu; // sequences of 4096 points; longer ones start over with another seed
+
+Sampler make_sampler(uint seed, uint index) {
+    uint epoch = index & ~kSobolIndexMask;
+    uint mixed = epoch == 0u ? seed : hash_combine(seed, epoch);
+    return Sampler(mixed, index & kSobolIndexMask, 0u, hash_combine(mixed, index));
+}
+
+uint scramble_reversed(uint value, uint seed) {
+    value ^= value * 0x3d20adeau;
+    value += seed;
+    value *= (seed >> 16) | 1u;
+    value ^= value * 0x05526c56u;
+    value ^= value * 0x53a22864u;
+    return value;
+}
+
+uint owen_scramble(uint value, uint seed) {
+    return bitfieldReverse(scramble_reversed(bitfieldReverse(value), seed));
+}
+
+// Second Sobol dimension.
+uint sobol_second(uint index) {
+    uint result = 0u;
+    for (uint direction = 0x80000000u; index != 0u; index >>= 1u, direction ^= direction >> 1u) {
+        if ((index & 1u) != 0u) {
+            result ^= direction;
+        }
+    }
+    return result;
+}
+
+float next_float(inout Sampler rng) {
+    rng.state = rng.state * 747796405u + 2891336453u;
+    uint word = ((rng.state >> ((rng.state >> 28u) + 4u)) ^ rng.state) * 277803737u;
+    return unit_float((word >> 22u) ^ word);
+}
+
+vec2 next_pair(inout Sampler rng) {
+    uint dimension = rng.dimension++;
+    if (dimension >= kSobolPairs) {
+        float first = next_float(rng);
+        return vec2(first, next_float(rng));
+    }
+    uint seed = hash_combine(rng.seed, dimension);
+    // Owen scrambling of the index bits is a permutation of the low 12 bits: pairs become independent.
+    uint index = scramble_reversed(rng.index, seed) & kSobolIndexMask;
+    uint x = owen_scramble(bitfieldReverse(index), pcg_hash(seed));
+    uint y = owen_scramble(sobol_second(index), pcg_hash(seed ^ 0xB5297A4Du));
+    return vec2(unit_float(x), unit_float(y));
+}
+
+#endif

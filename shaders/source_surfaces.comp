@@ -1,0 +1,38 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// G-buffer planes of the source, in wire precision, from its visibility.
+#extension GL_GOOGLE_include_directive : require
+#include "lib/camera.glsl"
+#include "lib/surface.glsl"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { SourceSurfacesParams params; };
+
+void store(uint pixel, float depth, uint normal, uint id, uint material) {
+    params.depth.at[pixel] = depth;
+    params.normal.at[pixel] = normal;
+    params.id.at[pixel] = id;
+    params.material.at[pixel] = material;
+    params.geometry.at[pixel] = uvec4(floatBitsToUint(depth), normal, id, material);
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.width * params.height) {
+        return;
+    }
+    Visibility seen = params.visibility.at[pixel];
+    if (seen.instance == kNoInstance) {
+        store(pixel, uintBitsToFloat(0x7F800000u), 0u, kNoIndex, 0u);
+        return;
+    }
+    CameraRecord camera = params.camera.at[0];
+    uint y = pixel / params.width;
+    vec3 direction = camera_direction(camera, vec2(pixel - y * params.width, y) + 0.5);
+    WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
+    vec3 at = intersect_plane(triangle, camera.origin, direction);
+    Surface s = make_surface(triangle, at.xy, normalize(direction), at.z / camera.focal_px);
+    uint material = uint(s.roughness * 255.0 + 0.5) | (uint(s.metallic * 255.0 + 0.5) << 8);
+    store(pixel, dot(s.position - camera.origin, camera.forward), pack_normal(s.normal),
+          (seen.instance << 12) | s.material, material);
+}

@@ -1,0 +1,85 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// One level of the edge-avoiding à-trous wavelet transform over diffuse and specular illumination together: 5×5 B3
+// spline, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
+#extension GL_GOOGLE_include_directive : require
+#include "lib/filter_taps.glsl"
+
+layout(local_size_x = 64) in;
+
+struct Signal {
+    vec4 sum;    // colour, variance
+    float total; // of the weights
+    float sigma; // of luminance
+    float centre_luminance;
+};
+
+void add_tap(inout Signal s, vec4 value, float weight) {
+    float w = weight * exp(-abs(luminance(value.rgb) - s.centre_luminance) / s.sigma);
+    s.sum += vec4(value.rgb * w, value.a * w * w);
+    s.total += w;
+}
+
+vec4 resolve(Signal s) {
+    return vec4(s.sum.rgb / s.total, s.sum.a / (s.total * s.total));
+}
+
+// 3×3 Gaussian of the variances (diffuse, specular), which are themselves noisy.
+vec2 blurred_variance(ivec2 at, vec2 centre) {
+    vec2 sum = 0.25 * centre;
+    float total = 0.25;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 offset = ivec2(i % 3 - 1, i / 3 - 1);
+        ivec2 p = at + offset;
+        if (i != 4 && is_inside(p)) {
+            float w = offset.x == 0 || offset.y == 0 ? 0.125 : 0.0625;
+            int texel = p.y * int(params.width) + p.x;
+            sum += w * vec2(texelFetch(diffuse_, texel).a, texelFetch(specular_, texel).a);
+            total += w;
+        }
+    }
+    return sum / total;
+}
+
+Signal make_signal(vec4 centre, float variance) {
+    return Signal(centre, 1.0, params.sigma_luminance * sqrt(max(variance, 0.0)) + 1e-4, luminance(centre.rgb));
+}
+
+void store(uint pixel, vec4 diffuse, vec4 specular) {
+    params.diffuse.at[pixel] = diffuse;
+    params.specular.at[pixel] = specular;
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.width * params.height) {
+        return;
+    }
+    uvec4 geometry = texelFetch(geometry_, int(pixel));
+    vec4 diffuse = texelFetch(diffuse_, int(pixel));
+    vec4 specular = texelFetch(specular_, int(pixel));
+    if (geometry.z == 0xFFFFFFFFu) {
+        store(pixel, diffuse, specular);
+        return;
+    }
+    uint y = pixel / params.width;
+    Centre c = load_centre(ivec2(pixel - y * params.width, y), geometry);
+    vec2 variance = blurred_variance(c.at, vec2(diffuse.a, specular.a));
+    Signal d = make_signal(diffuse, variance.x);
+    Signal s = make_signal(specular, variance.y);
+    const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
+    for (int i = 0; i < 25; ++i) {
+        ivec2 tap = ivec2(i % 5 - 2, i / 5 - 2);
+        ivec2 offset = tap * int(params.step);
+        ivec2 at = c.at + offset;
+        if (i != 12 && is_inside(at)) {
+            int texel = at.y * int(params.width) + at.x;
+            float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, texelFetch(geometry_, texel));
+            if (weight > 1e-4) {
+                add_tap(d, texelFetch(diffuse_, texel), weight);
+                add_tap(s, texelFetch(specular_, texel), weight);
+            }
+        }
+    }
+    store(pixel, resolve(d), resolve(s));
+}

@@ -1,0 +1,48 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Spatial estimate of the variance where the history is shorter than four frames (SVGF, section 4.2).
+#extension GL_GOOGLE_include_directive : require
+#include "lib/filter_taps.glsl"
+
+layout(local_size_x = 64) in;
+
+void pass_through(uint pixel) {
+    params.diffuse.at[pixel] = texelFetch(diffuse_, int(pixel));
+    params.specular.at[pixel] = texelFetch(specular_, int(pixel));
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.width * params.height) {
+        return;
+    }
+    uvec4 geometry = texelFetch(geometry_, int(pixel));
+    float frames = texelFetch(length_, int(pixel)).x;
+    bool is_short = frames < 4.0 && geometry.z != 0xFFFFFFFFu;
+    uint y = pixel / params.width;
+    Centre c = load_centre(ivec2(pixel - y * params.width, y), geometry);
+    vec3 diffuse = vec3(0.0);
+    vec3 specular = vec3(0.0);
+    vec4 moments = vec4(0.0);
+    float total = 0.0;
+    for (int i = 0; is_short && i < 49; ++i) { // 7×7
+        ivec2 offset = ivec2(i % 7 - 3, i / 7 - 3);
+        ivec2 at = c.at + offset;
+        if (is_inside(at)) {
+            int texel = at.y * int(params.width) + at.x;
+            float weight = offset == ivec2(0) ? 1.0 : geometry_weight(c, offset, texelFetch(geometry_, texel));
+            diffuse += weight * texelFetch(diffuse_, texel).rgb;
+            specular += weight * texelFetch(specular_, texel).rgb;
+            moments += weight * texelFetch(moments_, texel);
+            total += weight;
+        }
+    }
+    if (!is_short) {
+        pass_through(pixel);
+        return;
+    }
+    moments /= total;
+    float boost = 4.0 / max(frames, 1.0);
+    params.diffuse.at[pixel] = vec4(diffuse / total, max(0.0, moments.y - moments.x * moments.x) * boost);
+    params.specular.at[pixel] = vec4(specular / total, max(0.0, moments.w - moments.z * moments.z) * boost);
+}

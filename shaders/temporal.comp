@@ -1,0 +1,144 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Temporal accumulation of illumination and its moments along surface motion.
+// Follows: C. Schied et al. Spatiotemporal Variance-Guided Filtering. HPG 2017, sections 4.1 and 4.2.
+// Differs: tests in world space (plane distance in pixel footprints, id, normal) instead of screen space derivatives.
+#extension GL_GOOGLE_include_directive : require
+#include "lib/bsdf.glsl"
+#include "lib/camera.glsl"
+
+layout(local_size_x = 64) in;
+layout(set = 1, binding = kTemporalGeometry) uniform usamplerBuffer geometry_;
+layout(set = 1, binding = kTemporalPreviousGeometry) uniform usamplerBuffer previous_geometry_;
+layout(set = 1, binding = kTemporalPreviousDiffuse) uniform samplerBuffer previous_diffuse_;
+layout(set = 1, binding = kTemporalPreviousSpecular) uniform samplerBuffer previous_specular_;
+layout(set = 1, binding = kTemporalPreviousMoments) uniform samplerBuffer previous_moments_;
+layout(set = 1, binding = kTemporalPreviousLength) uniform samplerBuffer previous_length_;
+layout(set = 1, binding = kTemporalDiffuse) uniform samplerBuffer diffuse_;
+layout(set = 1, binding = kTemporalSpecular) uniform samplerBuffer specular_;
+layout(push_constant, scalar) uniform Push { TemporalParams params; };
+
+const float kMaxHistory = 64.0;
+
+struct History {
+    vec3 diffuse;
+    vec3 specular;
+    vec4 moments;
+    float frames;
+    float weight;
+};
+
+// A surface point where it was in the frame before.
+struct Past {
+    vec3 position;
+    vec3 geometric_normal;
+    vec3 normal;
+    uint id;
+    float plane_limit_m;
+    float tangential_limit_m;
+};
+
+void gather(CameraRecord camera, ivec2 at, float weight, Past past, inout History sum) {
+    ivec2 size = ivec2(params.width, params.height);
+    if (weight <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) {
+        return;
+    }
+    int texel = at.y * size.x + at.x;
+    uvec4 geometry = texelFetch(previous_geometry_, texel);
+    if (geometry.z != past.id) {
+        return;
+    }
+    vec3 offset = camera.origin + camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x) - past.position;
+    bool same = abs(dot(offset, past.geometric_normal)) <= past.plane_limit_m &&
+                length(offset) <= past.tangential_limit_m && dot(unpack_normal(geometry.y), past.normal) >= 0.5;
+    if (same) {
+        sum.diffuse += weight * texelFetch(previous_diffuse_, texel).rgb;
+        sum.specular += weight * texelFetch(previous_specular_, texel).rgb;
+        sum.moments += weight * texelFetch(previous_moments_, texel);
+        sum.frames += weight * texelFetch(previous_length_, texel).x;
+        sum.weight += weight;
+    }
+}
+
+History gather_history(CameraRecord camera, vec2 p, Past past) {
+    History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), 0.0, 0.0);
+    vec2 corner = floor(p - 0.5);
+    vec2 f = p - 0.5 - corner;
+    ivec2 base = ivec2(corner);
+    gather(camera, base, (1.0 - f.x) * (1.0 - f.y), past, sum);
+    gather(camera, base + ivec2(1, 0), f.x * (1.0 - f.y), past, sum);
+    gather(camera, base + ivec2(0, 1), (1.0 - f.x) * f.y, past, sum);
+    gather(camera, base + ivec2(1, 1), f.x * f.y, past, sum);
+    bool retry = sum.weight < 0.05;
+    ivec2 nearest = ivec2(floor(p));
+    for (int i = 0; retry && i < 9; ++i) {
+        ivec2 at = nearest + ivec2(i % 3 - 1, i / 3 - 1);
+        gather(camera, at, 1.0, past, sum);
+    }
+    return sum;
+}
+
+// The pixel's surface point, moved back by its instance's motion.
+Past past_surface(Visibility seen, CameraRecord now, CameraRecord before, vec2 position) {
+    vec3 direction = camera_direction(now, position);
+    WorldTriangle t = load_world_triangle(seen.instance, seen.primitive);
+    vec3 at = intersect_plane(t, now.origin, direction);
+    mat4x3 m = load_previous_transform(seen.instance);
+    vec3 corner0 = load_vertex(t.vertices.x).xyz;
+    vec3 corner1 = load_vertex(t.vertices.y).xyz;
+    vec3 corner2 = load_vertex(t.vertices.z).xyz;
+    vec3 object = corner0 * (1.0 - at.x - at.y) + corner1 * at.x + corner2 * at.y;
+    Past past;
+    past.position = m * vec4(object, 1.0);
+    vec3 e1 = m * vec4(corner1 - corner0, 0.0);
+    vec3 e2 = m * vec4(corner2 - corner0, 0.0);
+    vec3 area_normal = cross(e1, e2);
+    past.geometric_normal = area_normal / max(length(area_normal), 1e-30);
+    float depth = dot(past.position - before.origin, before.forward);
+    float footprint = max(depth, 0.0) / before.focal_px;
+    vec3 view = normalize(past.position - before.origin);
+    past.plane_limit_m = 1.5 * footprint + 1e-4 * depth;
+    past.tangential_limit_m = 2.5 * footprint / max(0.1, abs(dot(view, past.geometric_normal)));
+    past.id = (seen.instance << 12) | t.material;
+    return past;
+}
+
+void store(uint pixel, vec3 diffuse, vec3 specular, vec4 moments, float frames) {
+    params.diffuse.at[pixel] = vec4(diffuse, max(0.0, moments.y - moments.x * moments.x));
+    params.specular.at[pixel] = vec4(specular, max(0.0, moments.w - moments.z * moments.z));
+    params.moments.at[pixel] = moments;
+    params.history_length.at[pixel] = frames;
+}
+
+void main() {
+    uint pixel = gl_GlobalInvocationID.x;
+    if (pixel >= params.width * params.height) {
+        return;
+    }
+    vec3 diffuse = texelFetch(diffuse_, int(pixel)).rgb;
+    vec3 specular = texelFetch(specular_, int(pixel)).rgb;
+    float l_diffuse = luminance(diffuse);
+    float l_specular = luminance(specular);
+    vec4 moments = vec4(l_diffuse, l_diffuse * l_diffuse, l_specular, l_specular * l_specular);
+    Visibility seen = params.visibility.at[pixel];
+    if ((params.flags & kFlagTemporal) == 0u || seen.instance == kNoInstance) {
+        store(pixel, diffuse, specular, moments, 1.0);
+        return;
+    }
+    CameraRecord now = params.cameras.at[0];
+    CameraRecord before = params.cameras.at[1];
+    uint y = pixel / params.width;
+    Past past = past_surface(seen, now, before, vec2(pixel - y * params.width, y) + 0.5);
+    past.normal = unpack_normal(texelFetch(geometry_, int(pixel)).y);
+    vec3 p = camera_project(before, past.position);
+    History history = gather_history(before, p.xy, past);
+    if (!(p.z > 0.0) || history.weight < 0.01) {
+        store(pixel, diffuse, specular, moments, 1.0);
+        return;
+    }
+    float scale = 1.0 / history.weight;
+    float frames = min(history.frames * scale + 1.0, kMaxHistory);
+    float alpha = max(params.alpha, 1.0 / frames);
+    store(pixel, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
+          mix(history.moments * scale, moments, alpha), frames);
+}
