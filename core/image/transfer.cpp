@@ -7,7 +7,10 @@
 namespace fieldcast::image {
 
 float srgb_from_linear(float linear) {
-    const float x = std::clamp(linear, 0.0F, 1.0F);
+    if (linear >= 1.0F) {
+        return 1.0F; // rounding of the formula gives a little less
+    }
+    const float x = linear < 0.0F ? 0.0F : linear; // keeps NaN
     return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F;
 }
 

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// SSIM follows: Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli. Image Quality Assessment: From Error Visibility
+// to Structural Similarity. IEEE TIP 13(4), 2004, section III.B, eq. 13. Differs: the mean leaves out the 5 px border
+// where the window would leave the image, as scikit-image does.
+#include "core/image/metrics.h"
+
+#include "core/base/error.h"
+#include "core/image/transfer.h"
+
+#include <array>
+#include <cmath>
+
+namespace fieldcast::image {
+
+namespace {
+
+constexpr int kRadius = 5; // 3.5 σ, rounded: 11 taps
+constexpr double kSigma = 1.5;
+constexpr double kC1 = 0.01 * 0.01;
+constexpr double kC2 = 0.03 * 0.03;
+
+void check_sizes(const RgbF32& a, const RgbF32& b) {
+    FC_ASSERT(a.width_px == b.width_px && a.height_px == b.height_px, "images have one size");
+    const std::size_t count = static_cast<std::size_t>(a.width_px) * a.height_px;
+    FC_ASSERT(count > 0 && a.pixels.size() == count && b.pixels.size() == count, "images have all their pixels");
+}
+
+/// Mean of f(x, r) over pixels and channels.
+template <class F> double channel_mean(const RgbF32& image, const RgbF32& reference, F f) {
+    check_sizes(image, reference);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            sum += f(static_cast<double>(image.pixels[i][channel]), static_cast<double>(reference.pixels[i][channel]));
+        }
+    }
+    return sum / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+/// One number per pixel.
+struct Field {
+    std::size_t width = 0;
+    std::size_t height = 0;
+    std::vector<double> values;
+};
+
+Field luma(const RgbF32& image) {
+    Field field{image.width_px, image.height_px, {}};
+    field.values.reserve(image.pixels.size());
+    for (const glm::vec3& p : image.pixels) {
+        field.values.push_back(0.2126 * static_cast<double>(p.r) + 0.7152 * static_cast<double>(p.g) +
+                               0.0722 * static_cast<double>(p.b));
+    }
+    return field;
+}
+
+Field product(const Field& a, const Field& b) {
+    Field field = a;
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+        field.values[i] *= b.values[i];
+    }
+    return field;
+}
+
+std::array<double, 2 * kRadius + 1> gaussian_taps() {
+    std::array<double, 2 * kRadius + 1> taps{};
+    double sum = 0.0;
+    for (int i = -kRadius; i <= kRadius; ++i) {
+        const double tap = std::exp(-0.5 * i * i / (kSigma * kSigma));
+        taps[static_cast<std::size_t>(i + kRadius)] = tap;
+        sum += tap;
+    }
+    for (double& tap : taps) {
+        tap /= sum;
+    }
+    return taps;
+}
+
+/// Weighted mean over the window around each pixel whose window lies inside: smaller by the radius on each side.
+Field window_mean(const Field& field) {
+    static const auto taps = gaussian_taps();
+    const std::size_t width = field.width - 2 * kRadius;
+    Field across{width, field.height, std::vector<double>(width * field.height)};
+    for (std::size_t y = 0; y < field.height; ++y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            for (std::size_t i = 0; i < taps.size(); ++i) {
+                across.values[y * width + x] += taps[i] * field.values[y * field.width + x + i];
+            }
+        }
+    }
+    const std::size_t height = field.height - 2 * kRadius;
+    Field result{width, height, std::vector<double>(width * height)};
+    for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t i = 0; i < taps.size(); ++i) {
+            for (std::size_t x = 0; x < width; ++x) {
+                result.values[y * width + x] += taps[i] * across.values[(y + i) * width + x];
+            }
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+RgbF32 display_image(const RgbF32& linear, float exposure) {
+    RgbF32 result = linear;
+    for (glm::vec3& pixel : result.pixels) {
+        for (int channel = 0; channel < 3; ++channel) {
+            pixel[channel] = srgb_from_linear(exposure * pixel[channel]);
+        }
+    }
+    return result;
+}
+
+RgbF32 display_image(const Plane& rgb) {
+    FC_ASSERT(rgb.format == PlaneFormat::kRgb8, "plane is display-referred");
+    FC_ASSERT(rgb.bytes.size() == plane_bytes(rgb.format, rgb.width_px, rgb.height_px), "plane has all its pixels");
+    RgbF32 result{rgb.width_px, rgb.height_px, {}};
+    const auto value = [&](std::size_t i) { return static_cast<float>(std::to_integer<int>(rgb.bytes[i])) / 255.0F; };
+    for (std::size_t i = 0; i < rgb.bytes.size(); i += 3) {
+        result.pixels.emplace_back(value(i), value(i + 1), value(i + 2));
+    }
+    return result;
+}
+
+double rmse(const RgbF32& image, const RgbF32& reference) {
+    return std::sqrt(channel_mean(image, reference, [](double x, double r) { return (x - r) * (x - r); }));
+}
+
+double psnr_db(const RgbF32& image, const RgbF32& reference) {
+    return -20.0 * std::log10(rmse(image, reference)); // log10(0) = −infinity
+}
+
+double ssim(const RgbF32& image, const RgbF32& reference) {
+    check_sizes(image, reference);
+    FC_ASSERT(image.width_px > 2 * kRadius && image.height_px > 2 * kRadius, "the window fits into the image");
+    const Field x = luma(image);
+    const Field y = luma(reference);
+    const Field mean_x = window_mean(x);
+    const Field mean_y = window_mean(y);
+    const Field mean_xx = window_mean(product(x, x));
+    const Field mean_yy = window_mean(product(y, y));
+    const Field mean_xy = window_mean(product(x, y));
+    double sum = 0.0;
+    for (std::size_t i = 0; i < mean_x.values.size(); ++i) {
+        const double mx = mean_x.values[i];
+        const double my = mean_y.values[i];
+        const double variances = mean_xx.values[i] - mx * mx + mean_yy.values[i] - my * my;
+        const double covariance = mean_xy.values[i] - mx * my;
+        sum += (2.0 * mx * my + kC1) * (2.0 * covariance + kC2) / ((mx * mx + my * my + kC1) * (variances + kC2));
+    }
+    return sum / static_cast<double>(mean_x.values.size());
+}
+
+double relative_mse(const RgbF32& image, const RgbF32& reference) {
+    return channel_mean(image, reference, [](double x, double r) { return (x - r) * (x - r) / (r * r + 0.01); });
+}
+
+} // namespace fieldcast::image

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/image/image_file.h"
+#include "core/lightfield/plane.h"
+
+namespace fieldcast::image {
+
+// Comparisons of two images of one size. RMSE, PSNR and SSIM take display-referred values in 0 … 1, as `display_image`
+// gives them; the reference comes second everywhere.
+
+/// clamp(exposure · linear, 0, 1) through the sRGB curve: what the metrics of the paper are taken of here.
+RgbF32 display_image(const RgbF32& linear, float exposure);
+
+/// Bytes of a kRgb8 plane divided by 255, the sRGB curve kept.
+RgbF32 display_image(const Plane& rgb);
+
+/// Root of the mean squared difference over pixels and channels.
+double rmse(const RgbF32& image, const RgbF32& reference);
+
+/// −20 log10(RMSE), dB; infinity for equal images.
+double psnr_db(const RgbF32& image, const RgbF32& reference);
+
+/// Mean structural similarity of the Rec. 709 luma with an 11×11 Gaussian window of σ = 1.5 px, K1 = 0.01, K2 = 0.03,
+/// range 1 and population covariance, over the pixels whose window lies inside. Images are at least 11×11.
+double ssim(const RgbF32& image, const RgbF32& reference);
+
+/// Mean of (x − r)² / (r² + 0.01) over pixels and channels of linear images.
+double relative_mse(const RgbF32& image, const RgbF32& reference);
+
+} // namespace fieldcast::image
