@@ -169,13 +169,14 @@ Event Session::failed_frame(std::uint64_t frame_id, std::uint32_t epoch, std::st
 Event Session::arrived_frame(wire::ReceivedFrame frame, std::int64_t last_byte_ns) {
     failures_in_a_row_ = 0;
     FrameArrived arrived;
+    arrived.frame_id = frame.header().frame_id;
     arrived.first_byte_ns = first_byte_ns_;
     arrived.last_byte_ns = last_byte_ns;
     arrived.decoded_ns = steady_now_ns();
     arrived.pose_sampled_ns = clock_.client_from_server_ns(frame.server_times.pose_sampled_ns);
     arrived.send_begin_ns = clock_.client_from_server_ns(frame.server_times.send_begin_ns);
     FrameReport report;
-    report.frame_id = frame.header().frame_id;
+    report.frame_id = arrived.frame_id;
     report.epoch = frame.epoch;
     report.first_byte_ns = arrived.first_byte_ns;
     report.last_byte_ns = arrived.last_byte_ns;

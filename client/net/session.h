@@ -18,6 +18,7 @@ namespace fieldcast::client::net {
 /// A complete frame that fits what was agreed, with its times on our steady clock.
 struct FrameArrived {
     wire::ReceivedFrame frame;
+    std::uint64_t frame_id = 0; ///< stays when the content of `frame` is moved away
     std::int64_t first_byte_ns = 0;
     std::int64_t last_byte_ns = 0;
     std::int64_t decoded_ns = 0;

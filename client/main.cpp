@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/console.h"
+#include "client/options.h"
+
+#include "core/base/log.h"
+#include "core/image/atomic_file.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <span>
+#include <thread>
+#include <unistd.h>
+
+namespace {
+
+using namespace fieldcast;
+
+constexpr int kExitFailed = 1;
+constexpr int kExitUserError = 2;
+constexpr int kExitInterrupted = 130;
+
+/// Turns the first INT or TERM into a stop request; the second one ends the process at once. Made before any other
+/// thread, so that all of them inherit the blocked signals and only this one sees them.
+class Interrupt {
+public:
+    Interrupt() {
+        sigemptyset(&signals_);
+        sigaddset(&signals_, SIGINT);
+        sigaddset(&signals_, SIGTERM);
+        pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+        thread_ = std::jthread([this](const std::stop_token& stop) { listen(stop); });
+    }
+
+    std::stop_token token() const { return source_.get_token(); }
+    bool was_requested() const { return source_.stop_requested(); }
+
+private:
+    void listen(const std::stop_token& stop) {
+        constexpr timespec kLookAtStop{0, 100'000'000};
+        while (!stop.stop_requested()) {
+            if (sigtimedwait(&signals_, nullptr, &kLookAtStop) < 0) {
+                continue;
+            }
+            if (!source_.request_stop()) {
+                _exit(kExitInterrupted);
+            }
+        }
+    }
+
+    sigset_t signals_{};
+    std::stop_source source_;
+    std::jthread thread_;
+};
+
+int report(const client::Options& options, const client::play::PlayResult& result, bool was_interrupted) {
+    std::fputs(to_table(result.summary).c_str(), stdout);
+    if (!options.json.empty()) {
+        const std::string json = to_json(result.summary);
+        image::write_file_atomically(options.json, std::as_bytes(std::span(json)));
+    }
+    if (was_interrupted) {
+        return kExitInterrupted;
+    }
+    if (result.failure) {
+        std::fprintf(stderr, "fieldcast-client: %s\n", result.failure->message.c_str());
+        return result.failure->was_refused ? kExitUserError : kExitFailed;
+    }
+    return 0;
+}
+
+client::play::PlayResult play_or_fall_back(client::Options& options, const Interrupt& interrupt) {
+    client::ProgressLine line;
+    const auto on_progress = [&](const client::play::Progress& progress) { line.show(progress); };
+    try {
+        return client::play::play(options.play, on_progress, interrupt.token());
+    } catch (const client::play::NoDeviceForScene& error) {
+        if (!options.falls_back_to_views) {
+            throw;
+        }
+        log::warn("no device for mode scene, taking finished views", {{"reason", error.what()}});
+    }
+    options.play.wish.mode = client::net::Mode::kViews;
+    return client::play::play(options.play, on_progress, interrupt.token());
+}
+
+int run(client::Options options) {
+    log::set_level(options.is_verbose ? log::Level::kDebug : log::Level::kWarn);
+    const Interrupt interrupt;
+    try {
+        const client::play::PlayResult result = play_or_fall_back(options, interrupt);
+        return report(options, result, interrupt.was_requested());
+    } catch (const client::play::NoDeviceForScene& error) {
+        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        return kExitUserError;
+    } catch (const UserError& error) {
+        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        return kExitUserError;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        return interrupt.was_requested() ? kExitInterrupted : kExitFailed;
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const client::Invocation invocation = client::read_options(argc, argv);
+    if (!invocation.options) {
+        std::fputs(invocation.text.c_str(), invocation.exit_code == 0 ? stdout : stderr);
+        return invocation.exit_code;
+    }
+    return run(*invocation.options);
+}

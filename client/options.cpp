@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/options.h"
+#include "client/play/scene_cache.h"
+
+#include <CLI/CLI.hpp>
+#include <numbers>
+#include <sstream>
+
+namespace fieldcast::client {
+namespace {
+
+constexpr const char* kExamples = R"(
+Examples:
+  Nine finished views, once:
+    fieldcast-client --grid 3x3 --size 320x180 --frames 1 --out out/thin
+  Hold the scene and make 25 views on the Vulkan device of this machine:
+    fieldcast-client --mode scene --grid 5x5 --size 640x360 --frames 30 --out out/scene --write quilt,exr
+  A horizontal sweep for a lenticular display, with everything that can be written:
+    fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
+
+Exit codes: 0 all frames shown, 1 the server or this machine failed, 2 what was asked cannot be had, 130 interrupted.
+)";
+
+/// What the flags say, before it is checked.
+struct FlagText {
+    std::string grid = "4x4";
+    std::string size;
+    std::vector<std::string> modes{"views"};
+    std::string planes = "g-buffer";
+    std::string save = "last";
+    std::vector<std::string> write{"quilt", "views"};
+    std::string anchor = "lattice";
+    std::string cache;
+    double patience_s = 30.0;
+    float fov_deg = 0.0F;
+    float spacing_m = -1.0F;
+    float convergence_m = -1.0F;
+    bool no_reconnect = false;
+};
+
+void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
+    app.add_option("--grid", text.grid, "Views, ROWSxCOLS, at most 72 in all")->capture_default_str();
+    app.add_option("--size", text.size, "Pixels of one view, WIDTHxHEIGHT; without it: those of the source");
+    app.add_option("--fov", text.fov_deg, "Vertical field of view, degrees; without it: the source's")
+        ->check(CLI::Range(0.01F, 179.0F));
+    app.add_option("--spacing", text.spacing_m, "Metres between neighbouring views; without it: the channel's")
+        ->check(CLI::Range(0.0F, 1000.0F));
+    app.add_option("--convergence", text.convergence_m, "Depth of zero disparity, metres; 0: parallel cameras")
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--anchor", text.anchor, "Where the source is in the grid: lattice or centre")
+        ->check(CLI::IsMember({"lattice", "centre"}))
+        ->capture_default_str();
+    app.add_option("--max-fps", wish.max_frames_per_second, "Frames per second at most; 0: the channel's")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+}
+
+void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
+    app.add_option(
+           "--mode", text.modes,
+           "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
+           "device; scene,views: scene if there is a device")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"views", "scene"}))
+        ->capture_default_str();
+    app.add_option("--planes", text.planes,
+                   "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest")
+        ->check(CLI::IsMember({"g-buffer", "illumination"}))
+        ->capture_default_str();
+    app.add_option("--device", play.device, "Of mode scene: part of the Vulkan device's name");
+    app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
+        ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
+        ->capture_default_str();
+    app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
+}
+
+void add_server_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
+    app.add_option("--server", play.server.address, "HOST:PORT")->capture_default_str();
+    app.add_option("--channel", play.wish.channel, "Name of the channel; without it: the server's first");
+    app.add_flag("--no-reconnect", text.no_reconnect, "Fail when the server cannot be reached or goes away");
+    app.add_option("--patience", text.patience_s, "Seconds without any success after which to give up")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    app.add_option("--frames", play.frames, "Frames to show; 0: until interrupted")->capture_default_str();
+}
+
+void add_output_flags(CLI::App& app, FlagText& text, Options& options) {
+    app.add_option("--out", options.play.out, "Folder for the files")->capture_default_str();
+    app.add_option("--save", text.save, "last: the last frame; all: each in a folder of its own; none")
+        ->check(CLI::IsMember({"last", "all", "none"}))
+        ->capture_default_str();
+    app.add_option("--write", text.write, "What to write of a frame: quilt,views,contact-sheet,look-around,exr")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
+        ->capture_default_str();
+    app.add_option("--json", options.json, "Write the statistics to this file");
+    app.add_flag("--verbose", options.is_verbose, "Log every frame");
+}
+
+/// WIDTHxHEIGHT reads like ROWSxCOLS.
+void read_grids(const FlagText& text, net::Wish& wish) {
+    const auto grid = parse_grid(text.grid);
+    if (!grid) {
+        throw UserError("--grid " + text.grid + ": write ROWSxCOLS, as in 4x4");
+    }
+    if (const auto problem = grid_problem(*grid)) {
+        throw UserError("--grid: " + *problem);
+    }
+    wish.rows = grid->rows;
+    wish.cols = grid->cols;
+    if (text.size.empty()) {
+        return;
+    }
+    const auto size = parse_grid(text.size);
+    if (!size || size->rows == 0 || size->cols == 0 || size->rows > kMaxPlaneSide || size->cols > kMaxPlaneSide) {
+        throw UserError("--size " + text.size + ": write WIDTHxHEIGHT, as in 640x360");
+    }
+    wish.width_px = size->rows;
+    wish.height_px = size->cols;
+}
+
+bool contains(const std::vector<std::string>& words, const char* word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+sink::Products read_products(const std::vector<std::string>& words) {
+    sink::Products products;
+    products.quilt = contains(words, "quilt");
+    products.views = contains(words, "views");
+    products.contact_sheet = contains(words, "contact-sheet");
+    products.look_around = contains(words, "look-around");
+    products.source_exr = contains(words, "exr");
+    return products;
+}
+
+void read_text(const FlagText& text, Options& options) {
+    net::Wish& wish = options.play.wish;
+    read_grids(text, wish);
+    wish.mode = text.modes.front() == "scene" ? net::Mode::kScene : net::Mode::kViews;
+    options.falls_back_to_views = wish.mode == net::Mode::kScene && contains(text.modes, "views");
+    wish.planes = text.planes == "illumination" ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
+    wish.anchor = text.anchor == "centre" ? Anchor::kCentre : Anchor::kLattice;
+    wish.fovy_rad = text.fov_deg * std::numbers::pi_v<float> / 180.0F;
+    wish.spacing_m = text.spacing_m >= 0.0F ? std::optional(text.spacing_m) : std::nullopt;
+    wish.convergence_m = text.convergence_m >= 0.0F ? std::optional(text.convergence_m) : std::nullopt;
+    options.play.server.reconnects = !text.no_reconnect;
+    options.play.server.patience = std::chrono::milliseconds(static_cast<std::int64_t>(text.patience_s * 1000.0));
+    options.play.save = text.save == "all"    ? play::Save::kAll
+                        : text.save == "none" ? play::Save::kNone
+                                              : play::Save::kLast;
+    options.play.products = read_products(text.write);
+    if (options.play.products.source_exr && wish.mode == net::Mode::kViews) {
+        throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
+    }
+    if (wish.mode == net::Mode::kScene) {
+        options.play.cache_folder = text.cache.empty() ? play::SceneCache::default_folder().string() : text.cache;
+    }
+}
+
+} // namespace
+
+Invocation read_options(int argc, const char* const* argv) {
+    CLI::App app("Shows the light field of a Fieldcast server: receives or makes a grid of views and writes pictures.",
+                 "fieldcast-client");
+    app.footer(kExamples);
+    Options options;
+    FlagText text;
+    add_server_flags(app, text, options.play);
+    add_view_flags(app, text, options.play.wish);
+    add_mode_flags(app, text, options.play);
+    add_output_flags(app, text, options);
+    try {
+        app.parse(argc, argv);
+        read_text(text, options);
+        return {options, "", 0};
+    } catch (const CLI::ParseError& error) {
+        std::ostringstream out;
+        const bool is_help = app.exit(error, out, out) == 0;
+        return {std::nullopt, out.str(), is_help ? 0 : 2};
+    } catch (const UserError& error) {
+        return {std::nullopt, std::string(error.what()) + "\n", 2};
+    }
+}
+
+} // namespace fieldcast::client

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/play/playback.h"
+#include "client/play/scene_player.h"
+#include "client/play/scene_source.h"
+
+#include "core/base/log.h"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <deque>
+#include <memory>
+
+namespace fieldcast::client::play {
+namespace {
+
+/// Device, scene and renderers of mode kScene; built in this order, destroyed in reverse.
+struct SceneSide {
+    gpu::Device device;
+    scene::SceneHash hash{};
+    std::optional<ScenePlayer> player;
+
+    explicit SceneSide(const gpu::DeviceOptions& options) : device(options) {}
+};
+
+std::unique_ptr<SceneSide> make_scene_side(const PlayOptions& options, const std::stop_token& stop) {
+    gpu::DeviceOptions device_options;
+    device_options.name_contains = options.device;
+    std::unique_ptr<SceneSide> side;
+    try {
+        side = std::make_unique<SceneSide>(device_options);
+    } catch (const gpu::NoDeviceError& error) {
+        throw NoDeviceForScene(std::string("mode scene makes its views on a Vulkan device of this machine: ") +
+                               error.what() + ". With --mode views the server makes them.");
+    }
+    log::info("device chosen", {{"name", side->device.info().name}, {"driver", side->device.info().driver}});
+    scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
+    side->hash = scene.hash;
+    side->player.emplace(side->device, std::move(scene), options.traversal);
+    return side;
+}
+
+/// A shown frame; kept as long as it may have to be written.
+struct Shown {
+    std::uint64_t frame_id = 0;
+    ViewGrid grid;
+    Views views;
+};
+
+constexpr std::size_t kRememberedFrames = 1U << 16; // statistics of endless runs are about the last ones
+
+std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, std::int64_t end_ns) {
+    return begin_ns ? std::optional(static_cast<double>(end_ns - *begin_ns) * 1e-6) : std::nullopt;
+}
+
+class Player {
+public:
+    Player(const PlayOptions& options, SceneSide* scene_side) : options_(options), scene_side_(scene_side) {}
+
+    /// False if the frame could not be shown.
+    bool show(Arrival arrival);
+    /// Writes the last frame if that was put off.
+    void finish();
+    std::uint64_t shown_count() const { return shown_count_; }
+    Summary summary(const StreamCounts& counts) const;
+    Progress progress() const;
+
+private:
+    Decoded<Shown> make(Arrival& arrival);
+    void write(const std::filesystem::path& folder) const;
+    void record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t rendered_ns, std::int64_t shown_ns);
+
+    const PlayOptions& options_;
+    SceneSide* scene_side_; ///< null in mode kViews
+    std::optional<Shown> last_;
+    std::uint64_t shown_count_ = 0;
+    std::deque<ShownFrame> frames_; ///< the last ones
+};
+
+Decoded<Shown> Player::make(Arrival& arrival) {
+    const wire::ViewSet& set = arrival.agreement.view_set;
+    Shown shown;
+    shown.frame_id = arrival.arrived.frame_id;
+    shown.grid = set.grid;
+    if (auto* received = std::get_if<wire::ReceivedViews>(&arrival.arrived.frame.content)) {
+        shown.views = std::move(received->views);
+        return shown;
+    }
+    FC_ASSERT(scene_side_ != nullptr, "source frames are agreed on in mode kScene only");
+    Decoded<Views> views = scene_side_->player->play(std::get<SourceFrame>(arrival.arrived.frame.content), set);
+    if (!views) {
+        return tl::unexpected(views.error());
+    }
+    shown.views = std::move(*views);
+    return shown;
+}
+
+bool Player::show(Arrival arrival) {
+    const std::int64_t begin_ns = net::steady_now_ns();
+    Decoded<Shown> shown = make(arrival);
+    const std::int64_t rendered_ns = net::steady_now_ns();
+    if (!shown) {
+        log::warn("frame not shown", {{"frame", arrival.arrived.frame_id}, {"reason", shown.error().message}});
+        return false;
+    }
+    last_ = std::move(*shown);
+    if (options_.save == Save::kAll) {
+        std::array<char, 32> name{};
+        std::snprintf(name.data(), name.size(), "frame_%08llu", static_cast<unsigned long long>(last_->frame_id));
+        write(options_.out / name.data());
+    }
+    const std::int64_t shown_ns = net::steady_now_ns();
+    report_times(arrival, false, scene_side_ != nullptr ? rendered_ns : 0, shown_ns);
+    record(arrival, begin_ns, rendered_ns, shown_ns);
+    return true;
+}
+
+void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t rendered_ns, std::int64_t shown_ns) {
+    ShownFrame frame;
+    frame.frame_id = last_->frame_id;
+    frame.payload_bytes = arrival.arrived.frame.payload_bytes;
+    frame.send_to_decoded_ms = ms_between(arrival.arrived.send_begin_ns, arrival.arrived.decoded_ns);
+    frame.pose_to_decoded_ms = ms_between(arrival.arrived.pose_sampled_ns, arrival.arrived.decoded_ns);
+    frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
+    frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
+    frame.render_ms = scene_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
+    frame.shown_ns = shown_ns;
+    add_discards(last_->views, frame);
+    frames_.push_back(frame);
+    ++shown_count_;
+    if (frames_.size() > kRememberedFrames) {
+        frames_.pop_front();
+    }
+}
+
+void Player::write(const std::filesystem::path& folder) const {
+    std::optional<SourceFrame> source;
+    if (options_.products.source_exr && scene_side_ != nullptr) {
+        source = scene_side_->player->source(); // of the frame played last, which is the one shown last
+    }
+    const sink::Picture picture{last_->grid, last_->views, source ? &*source : nullptr};
+    sink::write_picture(folder, picture, options_.products);
+}
+
+void Player::finish() {
+    if (last_ && options_.save == Save::kLast) {
+        write(options_.out);
+    }
+}
+
+Summary Player::summary(const StreamCounts& counts) const {
+    Summary summary = summarise({frames_.begin(), frames_.end()}, counts);
+    summary.shown = shown_count_;
+    return summary;
+}
+
+Progress Player::progress() const {
+    Progress progress;
+    progress.shown = shown_count_;
+    progress.wanted = options_.frames;
+    progress.latest = frames_.back();
+    const double seconds = static_cast<double>(frames_.back().shown_ns - frames_.front().shown_ns) * 1e-9;
+    progress.frames_per_second = seconds > 0.0 ? static_cast<double>(frames_.size() - 1) / seconds : 0.0;
+    return progress;
+}
+
+void describe(const PlayOptions& options, const std::optional<net::Agreement>& agreement, Summary& summary) {
+    const net::Wish& wish = options.wish;
+    const bool rebuilds = wish.planes == net::PlaneWish::kIllumination;
+    summary.mode = wish.mode == net::Mode::kViews ? "views" : rebuilds ? "scene, illumination" : "scene, with G-buffer";
+    summary.grid = std::to_string(wish.rows) + "x" + std::to_string(wish.cols);
+    if (agreement) {
+        const wire::ViewSet& set = agreement->view_set;
+        summary.view_size = std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
+    }
+}
+
+} // namespace
+
+PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
+    std::unique_ptr<SceneSide> scene_side;
+    if (options.wish.mode == net::Mode::kScene) {
+        scene_side = make_scene_side(options, stop);
+    }
+    Receiver receiver(options.server, options.wish, scene_side ? std::optional(scene_side->hash) : std::nullopt);
+    Player player(options, scene_side.get());
+    std::optional<net::Agreement> agreement;
+    const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };
+    while (!is_complete()) {
+        std::optional<Arrival> arrival = receiver.take(stop);
+        if (!arrival) {
+            break;
+        }
+        agreement = arrival->agreement;
+        if (player.show(std::move(*arrival))) {
+            on_progress(player.progress());
+        }
+    }
+    receiver.finish();
+    player.finish();
+    PlayResult result;
+    result.summary = player.summary(receiver.counts());
+    describe(options, agreement, result.summary);
+    if (!is_complete() && !stop.stop_requested()) {
+        result.failure = receiver.failure();
+    }
+    return result;
+}
+
+} // namespace fieldcast::client::play

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/play/receiver.h"
+#include "client/play/statistics.h"
+#include "client/sink/picture_files.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+namespace fieldcast::client::play {
+
+enum class Save : std::uint8_t { kLast, kAll, kNone };
+
+struct PlayOptions {
+    ServerOptions server;
+    net::Wish wish;
+    std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
+    Save save = Save::kLast;
+    std::filesystem::path out = "out";
+    sink::Products products;
+    // Of mode kScene:
+    std::filesystem::path cache_folder;
+    std::string device;             ///< part of the name; empty: the best
+    std::string traversal = "auto"; ///< as in scene::choose_traversal
+};
+
+/// Where a run stands, for a line of text.
+struct Progress {
+    std::uint64_t shown = 0;
+    std::uint64_t wanted = 0; ///< 0: no end
+    double frames_per_second = 0.0;
+    ShownFrame latest;
+};
+using OnProgress = std::function<void(const Progress&)>;
+
+struct PlayResult {
+    Summary summary;
+    std::optional<Failure> failure; ///< empty if all wanted frames were shown, or on a stop request
+};
+
+/// There is no Vulkan device for mode kScene. The message says what was found and what works without one.
+class NoDeviceForScene : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Receives frames, makes or takes their views, writes what `options` asks for. Calls `on_progress` after each frame.
+/// On a stop request the file being written is finished, and with Save::kLast the last frame is written.
+/// Throws UserError, net::NetError, NoDeviceForScene, std::system_error.
+PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop);
+
+} // namespace fieldcast::client::play

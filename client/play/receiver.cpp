@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/play/receiver.h"
+
+#include "core/base/log.h"
+#include "core/scene/bundle.h"
+
+#include <algorithm>
+#include <exception>
+
+namespace fieldcast::client::play {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+constexpr unsigned kDecodingThreads = 4; // more strips than that are rarely waiting
+
+template <class... Handlers> struct Overloaded : Handlers... { using Handlers::operator()...; };
+
+} // namespace
+
+struct Receiver::SessionState {
+    std::shared_ptr<net::Session> session;
+    Attempts* attempts = nullptr;
+    std::optional<net::Agreement> agreement;
+    std::optional<SessionEnd> end;
+    std::optional<Clock::time_point> cut_at; ///< we half-closed; the server has so long to finish
+
+    void leave(std::chrono::milliseconds grace) {
+        session->half_close();
+        cut_at = std::min(cut_at.value_or(Clock::time_point::max()), Clock::now() + grace);
+    }
+};
+
+Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash)
+    : server_(server), wish_(wish), scene_hash_(scene_hash),
+      pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void Receiver::finish() {
+    thread_.request_stop();
+    if (thread_.joinable()) {
+        thread_.join();
+    }
+}
+
+void Receiver::run(const std::stop_token& stop) {
+    try {
+        Attempts attempts(server_.reconnects, server_.patience);
+        while (!stop.stop_requested()) {
+            const SessionEnd end = run_session(stop, attempts);
+            if (stop.stop_requested()) {
+                break;
+            }
+            log::info("session ended", {{"reason", end.message}});
+            if (!end.is_transient || !attempts.wait_for_next(stop)) {
+                *failure_.lock() = Failure{end.message, end.was_refused};
+                break;
+            }
+        }
+    } catch (const std::exception& error) {
+        log::error("receiver failed", {{"reason", error.what()}});
+        *failure_.lock() = Failure{error.what(), false};
+    }
+    mailbox_.close();
+}
+
+Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts& attempts) {
+    constexpr auto kLookAtStop = 100ms;
+    constexpr auto kFinishGrace = 2s;
+    const net::Connection connection(server_.address);
+    SessionState state;
+    state.attempts = &attempts;
+    state.session = std::make_shared<net::Session>(connection, wish_, pool_);
+    while (!state.end) {
+        if (auto event = state.session->next(Clock::now() + kLookAtStop)) {
+            handle(std::move(*event), state);
+        }
+        if (stop.stop_requested() && !state.cut_at) {
+            state.leave(kFinishGrace);
+        }
+        if (state.cut_at && Clock::now() >= *state.cut_at) {
+            break;
+        }
+    }
+    return state.end.value_or(SessionEnd{"the server did not finish after our half-close"});
+}
+
+void Receiver::handle(net::Event event, SessionState& state) {
+    std::visit(
+        Overloaded{
+            [&](net::Agreement& agreement) { agreed(std::move(agreement), state); },
+            [&](net::FrameArrived& frame) { arrived(std::move(frame), state); },
+            [&](net::FrameFailed& failed) {
+                ++counts_.lock()->failed;
+                log::warn("frame failed", {{"reason", failed.reason}});
+            },
+            [&](net::FrameAborted&) { ++counts_.lock()->aborted; },
+            [&](net::Refused& refused) {
+                state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
+            },
+            [&](net::GoingAway& going) {
+                log::info("server is going away", {{"reason", going.reason}});
+                state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
+            },
+            [&](net::Ended& ended) {
+                const std::string message = ended.error.what();
+                state.end = SessionEnd{message.empty() ? "the server finished" : message, ended.error.is_transient()};
+            }},
+        event);
+}
+
+void Receiver::agreed(net::Agreement agreement, SessionState& state) {
+    if (scene_hash_ && agreement.scene_hash != *scene_hash_) {
+        state.end = SessionEnd{"channel '" + agreement.channel + "' now shows another scene, " +
+                                   scene::to_hex(agreement.scene_hash) + "; start the client again",
+                               false};
+        return;
+    }
+    ++counts_.lock()->sessions;
+    log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
+    state.agreement = std::move(agreement);
+}
+
+void Receiver::arrived(net::FrameArrived frame, SessionState& state) {
+    state.attempts->succeeded();
+    log::debug("frame arrived", {{"frame", frame.frame_id}, {"bytes", frame.frame.payload_bytes}});
+    if (const auto replaced = mailbox_.put({*state.agreement, std::move(frame), state.session})) {
+        ++counts_.lock()->superseded;
+        report_times(*replaced, true, 0, 0);
+    }
+}
+
+} // namespace fieldcast::client::play

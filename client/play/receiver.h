@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/net/session.h"
+#include "client/play/attempts.h"
+#include "client/play/frame_mailbox.h"
+#include "client/play/statistics.h"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace fieldcast::client::play {
+
+/// How to reach a server, and what to do when that fails.
+struct ServerOptions {
+    std::string address = "127.0.0.1:50151"; ///< "host:port"
+    bool reconnects = true;
+    std::chrono::milliseconds patience{30'000}; ///< gives up when nothing has worked for so long
+};
+
+/// Why no more frames come.
+struct Failure {
+    std::string message;
+    bool was_refused = false; ///< the server will not do what was asked: another wish may work
+};
+
+/// Keeps a session with a server: opens it, decodes frames into the mailbox, comes back after interruptions. Has one
+/// thread, which may block on the network and on decoding.
+class Receiver {
+public:
+    /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
+    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash);
+
+    /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
+    std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
+
+    /// Half-closes, waits for the server to finish (2 s at most), ends the thread.
+    void finish();
+
+    StreamCounts counts() { return *counts_.lock(); }
+    std::optional<Failure> failure() { return *failure_.lock(); }
+
+private:
+    struct SessionEnd {
+        std::string message;
+        bool is_transient = true;
+        bool was_refused = false;
+    };
+    struct SessionState; ///< of the session in progress, for the thread
+
+    void run(const std::stop_token& stop);
+    SessionEnd run_session(const std::stop_token& stop, Attempts& attempts);
+    void handle(net::Event event, SessionState& state);
+    void agreed(net::Agreement agreement, SessionState& state);
+    void arrived(net::FrameArrived frame, SessionState& state);
+
+    ServerOptions server_;
+    net::Wish wish_;
+    std::optional<scene::SceneHash> scene_hash_;
+    WorkerPool pool_;
+    FrameMailbox mailbox_;
+    Guarded<StreamCounts> counts_;
+    Guarded<std::optional<Failure>> failure_;
+    std::jthread thread_;
+};
+
+} // namespace fieldcast::client::play

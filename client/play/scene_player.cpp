@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/play/scene_player.h"
+
+#include <algorithm>
+
+namespace fieldcast::client::play {
+namespace {
+
+render::ViewRequest view_request(const wire::ViewSet& set) {
+    render::ViewRequest request;
+    request.geometry = set.grid.geometry;
+    request.fovy_rad = set.fovy_rad;
+    request.width_px = set.width_px;
+    request.height_px = set.height_px;
+    request.positions = lattice_positions(set.grid);
+    return request;
+}
+
+bool has_surfaces(const SourceFrame& frame) {
+    return std::all_of(render::kSourceSemantics.begin(), render::kSourceSemantics.end(),
+                       [&](PlaneSemantic semantic) { return frame.find(semantic) != nullptr; });
+}
+
+} // namespace
+
+ScenePlayer::ScenePlayer(const gpu::Device& device, scene::Scene scene, const std::string& traversal)
+    : scene_(std::move(scene)), gpu_scene_(device, scene_, scene::choose_traversal(device, traversal)), planes_(device),
+      surfaces_(device, gpu_scene_), views_(device, gpu_scene_) {}
+
+Decoded<Views> ScenePlayer::play(const SourceFrame& frame, const wire::ViewSet& set) {
+    gpu_scene_.pose(frame.header.scene_time_ns, frame.header.cut);
+    if (const Decoded<bool> uploaded = planes_.upload(frame); !uploaded) {
+        return tl::unexpected(uploaded.error());
+    }
+    if (!has_surfaces(frame)) {
+        surfaces_.render(planes_);
+    }
+    return views_.render(planes_, view_request(set));
+}
+
+SourceFrame ScenePlayer::source() const {
+    return planes_.download(render::kSourceSemantics);
+}
+
+} // namespace fieldcast::client::play

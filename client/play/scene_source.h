@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/play/receiver.h"
+#include "core/scene/scene.h"
+
+#include <filesystem>
+#include <stop_token>
+#include <string>
+
+namespace fieldcast::client::play {
+
+/// The scene of `channel` (empty: the server's first), from the cache folder or from the server.
+/// Throws net::NetError when the server cannot be reached within its patience, UserError for an unknown channel.
+scene::Scene obtain_scene(const ServerOptions& server, const std::string& channel,
+                          const std::filesystem::path& cache_folder, const std::stop_token& stop);
+
+} // namespace fieldcast::client::play
