@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lightfield/view_grid.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace fieldcast::feed {
+
+inline constexpr std::size_t kMaxChannelNameBytes = 64;
+
+/// Facts about a channel, fixed when it starts.
+struct ChannelInfo {
+    std::string name;
+    std::array<std::uint8_t, 32> scene_hash{}; ///< SHA-256 of `bundle`
+    std::uint32_t source_width_px = 0;         ///< without guard band
+    std::uint32_t source_height_px = 0;        ///< without guard band
+    float fovy_rad = 0.785398F;                ///< vertical, of the source without guard band
+    ViewGrid largest_grid;                     ///< its geometry is the lattice of the channel
+    float frames_per_second = 30.0F;           ///< at most
+    GuardBand guard_band;
+    std::string camera;              ///< name of the camera node
+    bool is_camera_animated = false; ///< false: it stays where it is
+    std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
+    std::uint64_t max_view_pixels = 0;                    ///< of all views of a frame, over all clients
+};
+
+} // namespace fieldcast::feed

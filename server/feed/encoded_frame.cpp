@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/feed/encoded_frame.h"
+
+#include <algorithm>
+
+namespace fieldcast::feed {
+
+namespace {
+
+bool covers(const EncodedFrame& frame, const PlanesWish& wish) {
+    return frame.source.has_value() && std::ranges::all_of(wish.choices, [&](const wire::PlaneChoice& choice) {
+               return frame.source->find(choice) != nullptr;
+           });
+}
+
+bool covers(const EncodedFrame& frame, const ViewsWish& wish) {
+    const wire::EncodedViews* const views = find_views(frame, wish.format);
+    return views != nullptr && std::ranges::all_of(lattice_positions(wish.grid), [&](LatticePosition position) {
+               return views->views.contains(position);
+           });
+}
+
+} // namespace
+
+const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::ViewFormat& format) {
+    const auto found = std::ranges::find(frame.views, format, &wire::EncodedViews::format);
+    return found == frame.views.end() ? nullptr : &*found;
+}
+
+bool covers(const EncodedFrame& frame, const Wish& wish) {
+    return std::visit([&](const auto& kind) { return covers(frame, kind); }, wish);
+}
+
+} // namespace fieldcast::feed

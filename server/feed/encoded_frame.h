@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/wire/chunks.h"
+#include "server/feed/wish.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fieldcast::feed {
+
+/// One frame of a channel in every form that some client wanted when it was rendered. Never changed once published.
+struct EncodedFrame {
+    FrameHeader header;
+    wire::ServerTimes times; ///< without the send times, which differ between clients
+    std::optional<wire::EncodedSource> source;
+    std::vector<wire::EncodedViews> views;
+};
+
+using FramePtr = std::shared_ptr<const EncodedFrame>;
+
+/// The views of that format; null if absent.
+const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::ViewFormat& format);
+
+/// Whether everything in `wish` is in `frame`. A frame begun before a client changed its wish may lack something.
+bool covers(const EncodedFrame& frame, const Wish& wish);
+
+} // namespace fieldcast::feed

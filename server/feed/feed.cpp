@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/feed/feed.h"
+
+#include <vector>
+
+namespace fieldcast::feed {
+
+std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const {
+    Demand demand;
+    for (const auto& [id, subscriber] : state.subscribers) {
+        if (id != except_id) {
+            add(demand, subscriber.wish);
+        }
+    }
+    add(demand, wish);
+    const std::uint64_t pixels = demand.view_pixels();
+    if (!std::holds_alternative<ViewsWish>(wish) || pixels <= info_.max_view_pixels) {
+        return std::nullopt;
+    }
+    return "channel '" + info_.name + "' would render " + std::to_string(pixels) + " pixels per frame for all clients, at most " +
+           std::to_string(info_.max_view_pixels) + "; ask for fewer or smaller views or share the lattice of others";
+}
+
+tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
+                                                        FrameCallback callback) {
+    auto shared_callback = std::make_shared<const FrameCallback>(std::move(callback));
+    std::uint64_t id = 0;
+    {
+        auto state = feed->state_.lock();
+        if (auto problem = feed->budget_problem(*state, 0, wish)) {
+            return tl::unexpected(std::move(*problem));
+        }
+        id = state->next_id++;
+        state->subscribers.emplace(id, Subscriber{.wish = wish, .callback = std::move(shared_callback)});
+    }
+    feed->demand_changed_.notify_all();
+    return Subscription(feed, id);
+}
+
+std::optional<std::string> Feed::change(std::uint64_t id, const Wish& wish) {
+    auto state = state_.lock();
+    if (auto problem = budget_problem(*state, id, wish)) {
+        return problem;
+    }
+    state->subscribers.at(id).wish = wish;
+    return std::nullopt;
+}
+
+void Feed::remove(std::uint64_t id) {
+    Subscriber removed; // destroyed after the lock is released
+    auto state = state_.lock();
+    const auto found = state->subscribers.find(id);
+    removed = std::move(found->second);
+    state->subscribers.erase(found);
+}
+
+Demand Feed::demand() {
+    Demand demand;
+    auto state = state_.lock();
+    for (const auto& [id, subscriber] : state->subscribers) {
+        add(demand, subscriber.wish);
+    }
+    return demand;
+}
+
+bool Feed::wait_for_demand(const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] {
+        { auto state = state_.lock(); } // not between a waiter's test and its sleep
+        demand_changed_.notify_all();
+    });
+    auto state = state_.lock();
+    state.wait(demand_changed_, [&](const State& s) { return stop.stop_requested() || !s.subscribers.empty(); });
+    return !stop.stop_requested();
+}
+
+void Feed::publish(const FramePtr& frame) {
+    std::vector<std::shared_ptr<const FrameCallback>> callbacks;
+    {
+        auto state = state_.lock();
+        state->latest = {.frame_id = frame->header.frame_id, .scene_time_ns = frame->header.scene_time_ns};
+        for (const auto& [id, subscriber] : state->subscribers) {
+            callbacks.push_back(subscriber.callback);
+        }
+    }
+    for (const auto& callback : callbacks) {
+        (*callback)(frame);
+    }
+}
+
+LatestFrame Feed::latest() {
+    return state_.lock()->latest;
+}
+
+std::size_t Feed::subscriber_count() {
+    return state_.lock()->subscribers.size();
+}
+
+Subscription& Subscription::operator=(Subscription&& other) noexcept {
+    if (this != &other) {
+        end();
+        feed_ = std::move(other.feed_);
+        id_ = other.id_;
+    }
+    return *this;
+}
+
+void Subscription::end() {
+    if (feed_ != nullptr) {
+        feed_->remove(id_);
+        feed_.reset();
+    }
+}
+
+} // namespace fieldcast::feed

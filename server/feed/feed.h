@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/guarded.h"
+#include "server/feed/channel_info.h"
+#include "server/feed/encoded_frame.h"
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <tl/expected.hpp>
+
+// The border between a channel, which makes frames, and the sessions, which send them.
+//
+//     render loop:  feed->wait_for_demand(stop);  demand = feed->demand();  … render, encode …  feed->publish(frame);
+//     session:      subscription = Feed::subscribe(feed, wish, on_frame);   … subscription.change(wish) …
+namespace fieldcast::feed {
+
+/// Called by the thread that publishes, without any lock held. Must return at once and must not throw. One last call
+/// may still come while or just after the subscription ends.
+using FrameCallback = std::function<void(const FramePtr&)>;
+
+/// Newest frame of a channel, for heartbeats.
+struct LatestFrame {
+    std::uint64_t frame_id = 0; ///< 0: none yet
+    std::int64_t scene_time_ns = 0;
+};
+
+class Subscription;
+
+/// All subscribers of one channel, and what they want. Thread-safe.
+class Feed {
+public:
+    explicit Feed(ChannelInfo info) : info_(std::move(info)) {}
+
+    const ChannelInfo& info() const { return info_; }
+
+    /// Refused, with a reason that names the limit, if the views of all subscribers would exceed the pixel budget.
+    static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
+                                                             FrameCallback callback);
+
+    Demand demand();
+
+    /// Sleeps until somebody wants something. False: `stop` was requested.
+    bool wait_for_demand(const std::stop_token& stop);
+
+    /// Gives `frame` to every subscriber.
+    void publish(const FramePtr& frame);
+
+    LatestFrame latest();
+    std::size_t subscriber_count();
+
+    /// The channel cannot render any more; the reason was logged.
+    void set_failed() { has_failed_ = true; }
+    bool has_failed() const { return has_failed_; }
+
+private:
+    friend class Subscription;
+    struct Subscriber {
+        Wish wish;
+        std::shared_ptr<const FrameCallback> callback;
+    };
+    struct State {
+        std::map<std::uint64_t, Subscriber> subscribers;
+        std::uint64_t next_id = 1;
+        LatestFrame latest;
+    };
+
+    std::optional<std::string> budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const;
+    std::optional<std::string> change(std::uint64_t id, const Wish& wish);
+    void remove(std::uint64_t id);
+
+    const ChannelInfo info_;
+    std::atomic<bool> has_failed_ = false;
+    std::condition_variable demand_changed_;
+    Guarded<State> state_;
+};
+
+/// A place in a feed; ends when destroyed.
+class Subscription {
+public:
+    Subscription() = default;
+    Subscription(Subscription&& other) noexcept : feed_(std::move(other.feed_)), id_(other.id_) {}
+    Subscription& operator=(Subscription&& other) noexcept;
+    ~Subscription() { end(); }
+
+    /// Null after `end` or for a default-constructed one.
+    const std::shared_ptr<Feed>& feed() const { return feed_; }
+
+    /// Another wish from the next frame on. On failure the old one stays; the reason names the limit.
+    std::optional<std::string> change(const Wish& wish) { return feed_->change(id_, wish); }
+    void end();
+
+private:
+    friend class Feed;
+    Subscription(std::shared_ptr<Feed> feed, std::uint64_t id) : feed_(std::move(feed)), id_(id) {}
+
+    std::shared_ptr<Feed> feed_;
+    std::uint64_t id_ = 0;
+};
+
+} // namespace fieldcast::feed

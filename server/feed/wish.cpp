@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/feed/wish.h"
+
+#include <algorithm>
+
+namespace fieldcast::feed {
+
+namespace {
+
+void add(Demand& demand, const PlanesWish& wish) {
+    for (const wire::PlaneChoice& choice : wish.choices) {
+        if (std::ranges::find(demand.planes, choice) == demand.planes.end()) {
+            demand.planes.push_back(choice);
+        }
+    }
+}
+
+void add(Demand& demand, const ViewsWish& wish) {
+    auto views = std::ranges::find(demand.views, wish.format, &ViewDemand::format);
+    if (views == demand.views.end()) {
+        views = demand.views.insert(views, ViewDemand{.format = wish.format, .positions = {}});
+    }
+    const std::vector<LatticePosition> wanted = lattice_positions(wish.grid);
+    views->positions.insert(views->positions.end(), wanted.begin(), wanted.end());
+    std::ranges::sort(views->positions);
+    const auto repeated = std::ranges::unique(views->positions);
+    views->positions.erase(repeated.begin(), repeated.end());
+}
+
+} // namespace
+
+void add(Demand& demand, const Wish& wish) {
+    std::visit([&](const auto& kind) { add(demand, kind); }, wish);
+}
+
+std::uint64_t Demand::view_pixels() const {
+    std::uint64_t pixels = 0;
+    for (const ViewDemand& set : views) {
+        pixels += static_cast<std::uint64_t>(set.format.width_px) * set.format.height_px * set.positions.size();
+    }
+    return pixels;
+}
+
+} // namespace fieldcast::feed

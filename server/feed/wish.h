@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/wire/encode.h"
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace fieldcast::feed {
+
+/// Source planes, for a client that has the scene.
+struct PlanesWish {
+    std::vector<wire::PlaneChoice> choices;
+
+    bool operator==(const PlanesWish&) const = default;
+};
+
+/// Finished views. `grid.geometry` is that of `format`.
+struct ViewsWish {
+    wire::ViewFormat format;
+    ViewGrid grid;
+
+    bool operator==(const ViewsWish&) const = default;
+};
+
+/// What one client wants of every frame.
+using Wish = std::variant<PlanesWish, ViewsWish>;
+
+/// Views of one format that somebody wants.
+struct ViewDemand {
+    wire::ViewFormat format;
+    std::vector<LatticePosition> positions; ///< sorted, each once
+};
+
+/// The union of wishes: what the next frame has to contain.
+struct Demand {
+    std::vector<wire::PlaneChoice> planes; ///< each once
+    std::vector<ViewDemand> views;         ///< each format once
+
+    bool empty() const { return planes.empty() && views.empty(); }
+    std::uint64_t view_pixels() const; ///< of all views together
+};
+
+/// Widens `demand` so that it covers `wish`.
+void add(Demand& demand, const Wish& wish);
+
+} // namespace fieldcast::feed

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace fieldcast::session {
+
+/// Why a client did not get a frame of its channel.
+enum class DropReason : std::uint8_t {
+    kSending,      ///< an older frame was still being sent
+    kNoCredit,     ///< too many frames or bytes unacknowledged
+    kRateCap,      ///< the client asked for fewer frames
+    kReconfigured, ///< made for an earlier configuration, or aborted because of a new one
+    kLeaving,      ///< the server had said GoingAway
+};
+inline constexpr std::size_t kDropReasonCount = 5;
+inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames{"sending", "no_credit", "rate_cap",
+                                                                                 "reconfigured", "leaving"};
+
+/// Dropped frames of one session by reason.
+class DropCounts {
+public:
+    void add(DropReason reason) { ++counts_[static_cast<std::size_t>(reason)]; }
+    std::uint64_t of(DropReason reason) const { return counts_[static_cast<std::size_t>(reason)]; }
+
+private:
+    std::array<std::uint64_t, kDropReasonCount> counts_{};
+};
+
+} // namespace fieldcast::session

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/negotiate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace fieldcast::session {
+
+namespace {
+
+template <class T> using Chosen = tl::expected<T, Refusal>;
+
+tl::unexpected<Refusal> refuse(v1::RefusalReason reason, std::string field, std::string message) {
+    return tl::unexpected(Refusal{.reason = reason, .field = std::move(field), .message = std::move(message)});
+}
+
+tl::unexpected<Refusal> invalid(std::string field, std::string message) {
+    return refuse(v1::REFUSAL_REASON_INVALID, std::move(field), std::move(message));
+}
+
+std::string text(float number) {
+    std::ostringstream stream;
+    stream << number;
+    return stream.str();
+}
+
+Chosen<std::shared_ptr<feed::Feed>> choose_channel(const std::string& wanted, Channels channels) {
+    std::string names;
+    for (const auto& channel : channels) {
+        if (wanted.empty() || channel->info().name == wanted) {
+            return channel;
+        }
+        names += (names.empty() ? "" : ", ") + channel->info().name;
+    }
+    const std::string asked = wanted.size() <= feed::kMaxChannelNameBytes ? " '" + wanted + "'" : "";
+    return refuse(v1::REFUSAL_REASON_NOT_FOUND, "channel", "there is no channel" + asked + "; there are: " + names);
+}
+
+Chosen<v1::DeliveryMode> choose_mode(const v1::Configure& wanted) {
+    if (wanted.modes().empty()) {
+        return v1::DELIVERY_MODE_VIEWS;
+    }
+    std::string asked;
+    for (const int number : wanted.modes()) {
+        if (number == v1::DELIVERY_MODE_VIEWS || number == v1::DELIVERY_MODE_SCENE) {
+            return static_cast<v1::DeliveryMode>(number);
+        }
+        if (asked.size() < 256) {
+            const bool is_warp = number == v1::DELIVERY_MODE_WARP;
+            asked += (asked.empty() ? "" : ", ") + (is_warp ? std::string("WARP") : std::to_string(number));
+        }
+    }
+    return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "modes",
+                  "mode " + asked + " is not supported by this server; it offers VIEWS and SCENE");
+}
+
+Chosen<ViewGrid> choose_grid(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    if (!wanted.has_grid()) {
+        return channel.largest_grid;
+    }
+    const v1::Grid& grid = wanted.grid();
+    for (const auto& [field, count] : {std::pair("grid.rows", grid.rows()), std::pair("grid.cols", grid.cols())}) {
+        if (count == 0 || count > kMaxViews) {
+            return invalid(field, std::to_string(count) + " asked, 1 to " + std::to_string(kMaxViews) + " allowed");
+        }
+    }
+    const auto is_length = [](float metres) { return std::isfinite(metres) && metres >= 0.0F; };
+    for (const auto& [field, spacing] :
+         {std::pair("grid.spacing_x_m", grid.spacing_x_m()), std::pair("grid.spacing_y_m", grid.spacing_y_m())}) {
+        if (!is_length(spacing)) {
+            return invalid(field, text(spacing) + " m asked, finite and not negative allowed");
+        }
+    }
+    if (std::isnan(grid.convergence_m()) || grid.convergence_m() < 0.0F) {
+        return invalid("grid.convergence_m", text(grid.convergence_m()) + " m asked, 0 or more allowed");
+    }
+    auto chosen = wire::from_proto(grid, channel.largest_grid.geometry);
+    if (!chosen) {
+        return invalid("grid", chosen.error().message);
+    }
+    return *chosen;
+}
+
+/// Width and height of a view, 0 standing for the source's.
+Chosen<glm::uvec2> choose_size(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    const glm::uvec2 asked(wanted.view_width_px(), wanted.view_height_px());
+    const glm::uvec2 source(channel.source_width_px, channel.source_height_px);
+    if (asked == glm::uvec2(0)) {
+        return source;
+    }
+    const std::string range = " px asked, 1 to " ;
+    if (asked.x == 0 || asked.x > source.x) {
+        return invalid("view_width_px",
+                       std::to_string(asked.x) + range + std::to_string(source.x) + " (the source's) allowed");
+    }
+    if (asked.y == 0 || asked.y > source.y) {
+        return invalid("view_height_px",
+                       std::to_string(asked.y) + range + std::to_string(source.y) + " (the source's) allowed");
+    }
+    return asked;
+}
+
+Chosen<float> choose_fovy(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    const float asked = wanted.fovy_rad();
+    if (asked == 0.0F) {
+        return channel.fovy_rad;
+    }
+    constexpr float kRounding = 1.0F + 1e-5F; // a client may have computed the source's from degrees
+    if (!(asked > 0.0F) || !(asked <= channel.fovy_rad * kRounding)) {
+        return invalid("fovy_rad", text(asked) + " rad asked, more than 0 and at most " + text(channel.fovy_rad) +
+                                       " (the source's) allowed");
+    }
+    return std::min(asked, channel.fovy_rad);
+}
+
+Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::ChannelInfo& channel,
+                                      v1::DeliveryMode mode, const Limits& limits) {
+    const auto grid = choose_grid(wanted, channel);
+    if (!grid) {
+        return tl::unexpected(grid.error());
+    }
+    const auto size = choose_size(wanted, channel);
+    if (!size) {
+        return tl::unexpected(size.error());
+    }
+    const auto fovy = choose_fovy(wanted, channel);
+    if (!fovy) {
+        return tl::unexpected(fovy.error());
+    }
+    const std::uint64_t pixels = static_cast<std::uint64_t>(grid->view_count()) * size->x * size->y;
+    if (mode == v1::DELIVERY_MODE_VIEWS && pixels > limits.max_view_set_pixels) {
+        return invalid("grid", std::to_string(pixels) + " pixels in all views asked, at most " +
+                                   std::to_string(limits.max_view_set_pixels) + " allowed");
+    }
+    return wire::ViewSet{.grid = *grid, .width_px = size->x, .height_px = size->y, .fovy_rad = *fovy};
+}
+
+/// The first codec wanted for that plane that we have.
+Chosen<codec::CodecId> choose_codec(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const auto preference = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
+                                              [](const v1::CodecPreference& p) { return p.semantic(); });
+    if (preference == wanted.codecs().end() || preference->codecs().empty()) {
+        return codec::CodecId::kZstdFiltered;
+    }
+    for (const int number : preference->codecs()) {
+        if (const auto codec = wire::from_proto(static_cast<v1::Codec>(number))) {
+            return *codec;
+        }
+    }
+    return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
+                  "no codec asked for plane " + v1::PlaneSemantic_Name(wire::to_proto(semantic)) +
+                      " is supported; ZSTD_FILTERED and RAW are");
+}
+
+Chosen<feed::Wish> choose_planes(const v1::Configure& wanted) {
+    constexpr std::array kAll{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
+                              PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
+    constexpr std::size_t kIlluminationCount = 2;
+    const bool with_g_buffer = wanted.planes() == v1::PLANE_SET_WITH_G_BUFFER;
+    feed::PlanesWish wish;
+    for (const PlaneSemantic semantic : std::span(kAll).first(with_g_buffer ? kAll.size() : kIlluminationCount)) {
+        const auto codec = choose_codec(wanted, semantic);
+        if (!codec) {
+            return tl::unexpected(codec.error());
+        }
+        wish.choices.push_back({.semantic = semantic, .codec = *codec});
+    }
+    return wish;
+}
+
+Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, v1::DeliveryMode mode, const wire::ViewSet& set) {
+    if (mode == v1::DELIVERY_MODE_SCENE) {
+        return choose_planes(wanted);
+    }
+    const auto codec = choose_codec(wanted, PlaneSemantic::kColour);
+    if (!codec) {
+        return tl::unexpected(codec.error());
+    }
+    return feed::ViewsWish{.format = {.geometry = set.grid.geometry,
+                                      .fovy_rad = set.fovy_rad,
+                                      .width_px = set.width_px,
+                                      .height_px = set.height_px,
+                                      .codec = *codec},
+                           .grid = set.grid};
+}
+
+Chosen<float> choose_rate(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    const float asked = wanted.max_frames_per_second();
+    if (!std::isfinite(asked) || asked < 0.0F) {
+        return invalid("max_frames_per_second", text(asked) + " asked, finite and not negative allowed");
+    }
+    return asked == 0.0F ? channel.frames_per_second : std::min(asked, channel.frames_per_second);
+}
+
+Chosen<std::uint32_t> choose_chunk_bytes(const v1::Configure& wanted, const Limits& limits) {
+    const std::uint32_t asked = wanted.chunk_bytes();
+    if (asked != 0 && (asked < wire::kMinChunkBytes || asked > wire::kMaxChunkBytes)) {
+        return invalid("chunk_bytes", std::to_string(asked) + " asked, " + std::to_string(wire::kMinChunkBytes) +
+                                          " to " + std::to_string(wire::kMaxChunkBytes) + " allowed");
+    }
+    return std::min(asked == 0 ? wire::kDefaultChunkBytes : asked, limits.max_chunk_bytes);
+}
+
+} // namespace
+
+tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Channels channels, const Limits& limits) {
+    const auto channel = choose_channel(wanted.channel(), channels);
+    if (!channel) {
+        return tl::unexpected(channel.error());
+    }
+    const feed::ChannelInfo& info = (*channel)->info();
+    const auto mode = choose_mode(wanted);
+    if (!mode) {
+        return tl::unexpected(mode.error());
+    }
+    const auto view_set = choose_view_set(wanted, info, *mode, limits);
+    if (!view_set) {
+        return tl::unexpected(view_set.error());
+    }
+    auto wish = choose_wish(wanted, *mode, *view_set);
+    if (!wish) {
+        return tl::unexpected(wish.error());
+    }
+    const auto rate = choose_rate(wanted, info);
+    if (!rate) {
+        return tl::unexpected(rate.error());
+    }
+    const auto chunk_bytes = choose_chunk_bytes(wanted, limits);
+    if (!chunk_bytes) {
+        return tl::unexpected(chunk_bytes.error());
+    }
+    const std::uint64_t bytes = wanted.max_bytes_in_flight() == 0 ? limits.max_bytes_in_flight
+                                                                  : wanted.max_bytes_in_flight();
+    return Configuration{.feed = *channel,
+                         .mode = *mode,
+                         .view_set = *view_set,
+                         .wish = std::move(*wish),
+                         .frames_per_second = *rate,
+                         .max_bytes_in_flight = std::min(bytes, limits.max_bytes_in_flight),
+                         .chunk_bytes = *chunk_bytes};
+}
+
+} // namespace fieldcast::session

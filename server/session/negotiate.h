@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/wire/convert.h"
+#include "server/feed/feed.h"
+#include "server/session/limits.h"
+
+#include "fieldcast/v1/light_field.pb.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace fieldcast::session {
+
+/// What a client gets: the chosen values for everything that a Configure may leave open.
+struct Configuration {
+    std::shared_ptr<feed::Feed> feed;
+    v1::DeliveryMode mode = v1::DELIVERY_MODE_VIEWS;
+    wire::ViewSet view_set;
+    feed::Wish wish;
+    float frames_per_second = 30.0F;
+    std::uint64_t max_bytes_in_flight = 0;
+    std::uint32_t chunk_bytes = wire::kDefaultChunkBytes;
+};
+
+struct Refusal {
+    v1::RefusalReason reason = v1::REFUSAL_REASON_INVALID;
+    std::string field;   ///< of Configure
+    std::string message; ///< what was asked and what is allowed
+};
+
+using Channels = std::span<const std::shared_ptr<feed::Feed>>;
+
+/// Chooses a configuration, or says what is wrong. Only looks: admission is up to the feed.
+tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Channels channels, const Limits& limits);
+
+/// `configuration` for the client.
+v1::Configured to_message(const Configuration& configuration, std::uint32_t request_id, std::uint32_t epoch,
+                          std::uint32_t credits);
+
+v1::Refused to_message(const Refusal& refusal, std::uint32_t request_id);
+
+} // namespace fieldcast::session

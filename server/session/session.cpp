@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/session.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fieldcast::session {
+
+namespace {
+
+using std::chrono::nanoseconds;
+
+std::int64_t nanoseconds_of(TimePoint time) {
+    return std::chrono::duration_cast<nanoseconds>(time.time_since_epoch()).count();
+}
+
+wire::WireChunk control_chunk(const v1::ServerMessage& message) {
+    return {.head = message.SerializeAsString(), .owner = nullptr, .payload = {}};
+}
+
+/// Time that the client says it spent on decoding after the last byte; its clock is not ours.
+nanoseconds decode_time(const v1::FrameAck& ack) {
+    const bool is_known = ack.last_byte_ns() > 0 && ack.decoded_ns() > ack.last_byte_ns();
+    return nanoseconds(is_known ? ack.decoded_ns() - ack.last_byte_ns() : 0);
+}
+
+} // namespace
+
+Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits,
+                 feed::FrameCallback on_frame, TimePoint now)
+    : channels_(std::move(channels)), limits_(limits), on_frame_(std::move(on_frame)),
+      credits_(1.0, limits.max_bytes_in_flight), next_heartbeat_(now + limits.heartbeat_interval),
+      configure_by_(now + limits.configure_deadline) {}
+
+void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
+    switch (message.message_case()) {
+    case v1::ClientMessage::kConfigure:
+        return handle(message.configure());
+    case v1::ClientMessage::kFrameAck:
+        return handle(message.frame_ack(), now);
+    case v1::ClientMessage::kTimeSync: {
+        v1::TimeSyncResponse& answer = *answers_.emplace_back().mutable_time_sync();
+        answer.set_client_send_ns(message.time_sync().client_send_ns());
+        answer.set_server_receive_ns(nanoseconds_of(now));
+        return;
+    }
+    case v1::ClientMessage::MESSAGE_NOT_SET:
+        return; // a kind that a newer client knows
+    }
+}
+
+void Session::handle(const v1::Configure& wanted) {
+    auto chosen = negotiate(wanted, channels_, limits_);
+    std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
+    if (refusal) {
+        *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
+        return;
+    }
+    drop_old_configuration();
+    configuration_ = std::move(*chosen);
+    credits_.configure(static_cast<double>(configuration_->frames_per_second), configuration_->max_bytes_in_flight);
+    next_frame_due_ = {};
+    ++epoch_;
+    *answers_.emplace_back().mutable_configured() =
+        to_message(*configuration_, wanted.request_id(), epoch_, credits_.limit());
+}
+
+std::optional<Refusal> Session::admit(const Configuration& wanted) {
+    const auto exhausted = [](std::string message) {
+        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "grid", .message = std::move(message)};
+    };
+    if (departure_ || cut_at_) {
+        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "", .message = "the server is going away"};
+    }
+    if (subscription_.feed() == wanted.feed) {
+        auto problem = subscription_.change(wanted.wish);
+        return problem ? std::optional(exhausted(std::move(*problem))) : std::nullopt;
+    }
+    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
+    if (!subscription) {
+        return exhausted(std::move(subscription.error()));
+    }
+    subscription_ = std::move(*subscription);
+    return std::nullopt;
+}
+
+void Session::drop_old_configuration() {
+    if (sending_) {
+        v1::FrameAborted& aborted = *answers_.emplace_back().mutable_frame_aborted();
+        aborted.set_frame_id(sending_->frame.frame_id);
+        aborted.set_epoch(epoch_);
+        aborted.set_reason(v1::ABORT_REASON_RECONFIGURED);
+        credits_.give_back({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        counts_.drops.add(DropReason::kReconfigured);
+        sending_.reset();
+    }
+    if (mailbox_.take()) {
+        counts_.drops.add(DropReason::kReconfigured);
+    }
+}
+
+void Session::handle(const v1::FrameAck& ack, TimePoint now) {
+    const bool is_first = credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
+    if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
+        ++counts_.frames_failed;
+    }
+}
+
+void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
+    if (!configuration_ || !feed::covers(*frame, configuration_->wish)) {
+        counts_.drops.add(DropReason::kReconfigured);
+        return;
+    }
+    const auto interval = std::chrono::duration_cast<TimePoint::duration>(
+        std::chrono::duration<double>(1.0 / static_cast<double>(configuration_->frames_per_second)));
+    if (now + interval / 4 < next_frame_due_) { // a quarter: frames of the channel are not evenly spaced
+        counts_.drops.add(DropReason::kRateCap);
+        return;
+    }
+    next_frame_due_ = std::max(next_frame_due_ + interval, now);
+    if (mailbox_.put(frame)) {
+        counts_.drops.add(sending_ ? DropReason::kSending : DropReason::kNoCredit);
+    }
+}
+
+void Session::go_away(const std::string& reason, TimePoint at) {
+    if (!departure_ && !cut_at_) {
+        departure_ = Departure{.reason = reason, .at = at};
+    }
+}
+
+void Session::on_tick(TimePoint now) {
+    if (!configuration_ && now >= configure_by_) {
+        go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now);
+    }
+    const auto oldest = credits_.oldest();
+    if (oldest && now - *oldest >= limits_.stall_deadline) {
+        go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now);
+    }
+}
+
+std::optional<wire::WireChunk> Session::next(TimePoint now) {
+    if (auto control = next_control(now)) {
+        return control;
+    }
+    if (!sending_) {
+        start_frame(now);
+    }
+    return sending_ ? std::optional(next_chunk(now)) : std::nullopt;
+}
+
+std::optional<wire::WireChunk> Session::next_control(TimePoint now) {
+    if (!answers_.empty()) {
+        v1::ServerMessage answer = std::move(answers_.front());
+        answers_.pop_front();
+        if (answer.has_time_sync()) {
+            answer.mutable_time_sync()->set_server_send_ns(nanoseconds_of(now));
+        }
+        return control_chunk(answer);
+    }
+    if (departure_ && now >= departure_->at) {
+        return control_chunk(depart(now));
+    }
+    if (now >= next_heartbeat_) {
+        next_heartbeat_ = now + limits_.heartbeat_interval;
+        v1::ServerMessage message = heartbeat();
+        message.mutable_heartbeat()->set_server_time_ns(nanoseconds_of(now));
+        return control_chunk(message);
+    }
+    return std::nullopt;
+}
+
+v1::ServerMessage Session::depart(TimePoint now) {
+    v1::ServerMessage message;
+    v1::GoingAway& going_away = *message.mutable_going_away();
+    going_away.set_reason(departure_->reason);
+    going_away.set_deadline_ms(static_cast<std::uint32_t>(limits_.going_away_deadline.count()));
+    departure_.reset();
+    cut_at_ = now + limits_.going_away_deadline;
+    subscription_.end();
+    if (mailbox_.take()) {
+        counts_.drops.add(DropReason::kLeaving);
+    }
+    return message;
+}
+
+v1::ServerMessage Session::heartbeat() const {
+    v1::ServerMessage message;
+    v1::Heartbeat& heartbeat = *message.mutable_heartbeat();
+    if (configuration_) {
+        const feed::LatestFrame latest = configuration_->feed->latest();
+        heartbeat.set_latest_frame_id(latest.frame_id);
+        heartbeat.set_scene_time_ns(latest.scene_time_ns);
+    }
+    return message;
+}
+
+void Session::start_frame(TimePoint now) {
+    if (mailbox_.peek() == nullptr || !credits_.allow(0)) {
+        return;
+    }
+    wire::WireFrame frame = chunks_of(**mailbox_.peek());
+    if (!credits_.allow(frame.payload_bytes)) {
+        return; // stays in the mailbox, where a newer one may replace it
+    }
+    const feed::FramePtr encoded = *mailbox_.take();
+    credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
+    sending_ = Sending{.frame = std::move(frame), .next_chunk = 0, .times = encoded->times};
+}
+
+wire::WireFrame Session::chunks_of(const feed::EncodedFrame& frame) const {
+    const wire::ChunkOptions options{.epoch = epoch_, .chunk_bytes = configuration_->chunk_bytes};
+    if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+        return wire::source_chunks(*frame.source, planes->choices, options);
+    }
+    const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
+    return wire::view_chunks(*feed::find_views(frame, views.format), views.grid, options);
+}
+
+wire::WireChunk Session::next_chunk(TimePoint now) {
+    Sending& sending = *sending_;
+    const std::size_t count = sending.frame.chunks.size();
+    if (sending.next_chunk == 0) {
+        sending.times.send_begin_ns = nanoseconds_of(now);
+    }
+    if (sending.next_chunk < count) {
+        sending.times.send_end_ns = nanoseconds_of(now);
+        wire::WireChunk chunk = std::move(sending.frame.chunks[sending.next_chunk++]);
+        counts_.bytes_sent += chunk.size();
+        return chunk;
+    }
+    wire::WireChunk trailer = wire::trailer_chunk(sending.frame, sending.times);
+    counts_.bytes_sent += trailer.size();
+    ++counts_.frames_sent;
+    credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
+    sending_.reset();
+    return trailer;
+}
+
+} // namespace fieldcast::session

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/session/credits.h"
+#include "server/session/drop_counts.h"
+#include "server/session/mailbox.h"
+#include "server/session/negotiate.h"
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fieldcast::session {
+
+/// What happened to one client, for its closing log line.
+struct SessionCounts {
+    std::uint64_t frames_sent = 0; ///< completely
+    std::uint64_t bytes_sent = 0;
+    std::uint64_t frames_failed = 0; ///< the client could not decode them
+    DropCounts drops;
+};
+
+/// One client: its configuration, what it is owed, and the next message to write. Knows no transport: whoever owns it
+/// hands in messages and frames, and calls next() whenever the previous message has been written.
+/// Not thread-safe. Memory is bounded: one frame in the mailbox, one being sent, kMaxQueuedAnswers answers.
+class Session {
+public:
+    /// `channels` must not be empty. `on_frame` must lead to Session::on_frame; it may come from any thread.
+    Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
+            TimePoint now);
+
+    void on_message(const v1::ClientMessage& message, TimePoint now);
+    void on_frame(const feed::FramePtr& frame, TimePoint now);
+
+    /// False: answers are waiting; read the client's next message only when they have gone.
+    bool accepts_input() const { return answers_.size() < kMaxQueuedAnswers; }
+
+    /// The next message to write, if there is one now.
+    std::optional<wire::WireChunk> next(TimePoint now);
+
+    /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
+    void go_away(const std::string& reason, TimePoint at);
+
+    /// Watches deadlines; call it several times per heartbeat interval.
+    void on_tick(TimePoint now);
+
+    /// The client was told to go and has not gone in time: cut the stream.
+    bool is_overdue(TimePoint now) const { return cut_at_ && now >= *cut_at_; }
+
+    /// Gives up its place in the channel: no further frames are rendered for it.
+    void end() { subscription_.end(); }
+
+    const std::optional<Configuration>& configuration() const { return configuration_; } ///< in force
+    std::uint32_t epoch() const { return epoch_; }
+    const SessionCounts& counts() const { return counts_; }
+
+private:
+    struct Departure {
+        std::string reason;
+        TimePoint at;
+    };
+    /// A frame between its header chunk and its trailer.
+    struct Sending {
+        wire::WireFrame frame;
+        std::size_t next_chunk = 0;
+        wire::ServerTimes times;
+    };
+
+    void handle(const v1::Configure& wanted);
+    void handle(const v1::FrameAck& ack, TimePoint now);
+    std::optional<Refusal> admit(const Configuration& wanted);
+    void drop_old_configuration();
+
+    std::optional<wire::WireChunk> next_control(TimePoint now);
+    v1::ServerMessage depart(TimePoint now);
+    v1::ServerMessage heartbeat() const;
+    void start_frame(TimePoint now);
+    wire::WireFrame chunks_of(const feed::EncodedFrame& frame) const;
+    wire::WireChunk next_chunk(TimePoint now);
+
+    std::vector<std::shared_ptr<feed::Feed>> channels_;
+    Limits limits_;
+    feed::FrameCallback on_frame_;
+    std::optional<Configuration> configuration_;
+    std::uint32_t epoch_ = 0;
+    Credits credits_;
+    Mailbox<feed::FramePtr> mailbox_;
+    std::optional<Sending> sending_;
+    std::deque<v1::ServerMessage> answers_;
+    std::optional<Departure> departure_; ///< GoingAway is to be sent
+    std::optional<TimePoint> cut_at_;    ///< set when GoingAway was sent
+    TimePoint next_heartbeat_;
+    TimePoint configure_by_;
+    TimePoint next_frame_due_{}; ///< by the client's rate cap
+    SessionCounts counts_;
+    feed::Subscription subscription_; ///< last: ends before what its callback leads to
+};
+
+} // namespace fieldcast::session
