@@ -212,11 +212,12 @@ private:
         }
         tree_.nodes[index] = encode_node(slots, first_node_ + first_child, first_leaf_ + first_leaf);
         tree_.nodes.resize(first_child + children.inner_count);
-        for (std::uint32_t slot = 0; slot < children.count; ++slot) {
+        for (std::uint32_t slot = children.inner_count; slot < children.count; ++slot) {
+            append_leaf(*children.branch[slot]);
+        }
+        for (std::uint32_t slot = 0; slot < children.inner_count; ++slot) {
             const Branch& child = *children.branch[slot];
-            if (slot >= children.inner_count) {
-                append_leaf(child);
-            } else if (child.is_leaf) {
+            if (child.is_leaf) {
                 tree_.nodes[first_child + slot].shape = shared::kBvhPlaced | child.primitive;
             } else {
                 write_node(child, first_child + slot, depth + 1);
