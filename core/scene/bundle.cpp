@@ -235,7 +235,10 @@ SceneHash hash_files(const SceneFiles& files, const LoadOptions& options) {
 
 std::vector<std::byte> make_bundle(const fs::path& file, const LoadOptions& options) {
     const SceneFiles files = read_scene_files(file, options);
+    std::uint64_t size = 0;
+    write_bundle(files, options, [&](std::span<const std::byte> bytes) { size += bytes.size(); });
     std::vector<std::byte> bundle;
+    bundle.reserve(size);
     write_bundle(files, options,
                  [&](std::span<const std::byte> bytes) { bundle.insert(bundle.end(), bytes.begin(), bytes.end()); });
     return bundle;

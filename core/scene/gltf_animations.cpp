@@ -9,6 +9,9 @@ namespace fieldcast::scene {
 
 namespace {
 
+/// Over all channels: many channels may share the same few bytes.
+constexpr std::uint64_t kMaxKeys = 1ULL << 24;
+
 class AnimationReader {
 public:
     AnimationReader(GltfDocument& document, GltfAccessors& accessors, GltfNodes& nodes)
@@ -76,6 +79,10 @@ private:
         if (accessors_.count(sampler.output) != accessors_.count(sampler.input) * values_per_key) {
             document_.refuse(object, "has not as many values as times");
         }
+        key_count_ += accessors_.count(sampler.output);
+        if (key_count_ > kMaxKeys) {
+            document_.refuse(object, "more than " + std::to_string(kMaxKeys) + " animation values in all");
+        }
         channel.times_s = accessors_.read_floats(sampler.input, 1, object + ": times");
         if (channel.times_s.front() < 0.0F || std::adjacent_find(channel.times_s.begin(), channel.times_s.end(),
                                                                  std::greater_equal<>()) != channel.times_s.end()) {
@@ -116,6 +123,7 @@ private:
     GltfNodes& nodes_;
     std::vector<AnimationChannel> channels_;
     std::set<std::pair<std::uint32_t, AnimationPath>> targets_;
+    std::uint64_t key_count_ = 0;
 };
 
 } // namespace

@@ -90,17 +90,13 @@ int decode(const Compression& c, std::vector<std::byte>& out) {
     if (result != 0) {
         return result;
     }
-    // The filters work on groups of four elements and may touch the rest of the last group.
-    const std::uint64_t padded = (c.count + 3) / 4 * 4;
-    out.resize(padded * c.stride);
     if (c.filter == "OCTAHEDRAL") {
-        meshopt_decodeFilterOct(out.data(), padded, c.stride);
+        meshopt_decodeFilterOct(out.data(), c.count, c.stride);
     } else if (c.filter == "QUATERNION") {
-        meshopt_decodeFilterQuat(out.data(), padded, c.stride);
+        meshopt_decodeFilterQuat(out.data(), c.count, c.stride);
     } else if (c.filter == "EXPONENTIAL") {
-        meshopt_decodeFilterExp(out.data(), padded, c.stride);
+        meshopt_decodeFilterExp(out.data(), c.count, c.stride);
     }
-    out.resize(c.count * c.stride);
     return 0;
 }
 
@@ -127,6 +123,10 @@ std::span<const std::byte> GltfBufferViews::decoded_bytes(int view) {
     const std::string object = object_name("bufferView", static_cast<std::size_t>(view), entry.name);
     const Compression compression = read_compression(document_, entry.extensions.at(kExtension), object);
     check_compression(document_, compression, entry.byteLength, object);
+    if (entry.byteLength > bytes_left_) {
+        document_.refuse(object, "decompressed data exceeds the limit on the size of all files");
+    }
+    bytes_left_ -= entry.byteLength;
     std::vector<std::byte> out(entry.byteLength);
     if (decode(compression, out) != 0) {
         document_.refuse(object, "compressed data is broken");

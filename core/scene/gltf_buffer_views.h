@@ -4,6 +4,7 @@
 #include "core/scene/gltf_document.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -13,8 +14,9 @@ namespace fieldcast::scene {
 /// Bytes of buffer views; those with EXT_meshopt_compression are decoded on first use. Not thread-safe.
 class GltfBufferViews {
 public:
-    /// Keeps a reference to `document`.
-    explicit GltfBufferViews(const GltfDocument& document) : document_(document) {}
+    /// Keeps a reference to `document`. `max_decoded_bytes`: of all compressed views together.
+    GltfBufferViews(const GltfDocument& document, std::uint64_t max_decoded_bytes)
+        : document_(document), bytes_left_(max_decoded_bytes) {}
 
     /// As long as the view's byteLength. Throws UserError.
     std::span<const std::byte> bytes(int view);
@@ -24,6 +26,7 @@ private:
 
     const GltfDocument& document_;
     std::map<int, std::vector<std::byte>> decoded_;
+    std::uint64_t bytes_left_;
 };
 
 } // namespace fieldcast::scene

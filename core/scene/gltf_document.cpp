@@ -118,7 +118,7 @@ private:
     void warn_of_extensions(const json& root) {
         for (const json& name : root.value("extensionsUsed", json::array())) {
             if (!is_supported_extension(name.get<std::string>())) {
-                document_.warnings.add("extension " + name.get<std::string>().substr(0, 60) + " is ignored", "file");
+                document_.warnings.add("extension " + name.get<std::string>().substr(0, 60) + " is ignored");
             }
         }
     }

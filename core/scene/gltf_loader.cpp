@@ -9,9 +9,9 @@
 #include "core/scene/gltf_lights.h"
 #include "core/scene/gltf_materials.h"
 #include "core/scene/gltf_meshes.h"
+#include "core/scene/scene_extent.h"
 
 #include <algorithm>
-#include <cmath>
 #include <new>
 
 namespace fieldcast::scene {
@@ -26,22 +26,9 @@ double longest_animation_s(const std::vector<AnimationChannel>& channels) {
     return duration_s;
 }
 
-/// Finite numbers may still multiply to infinity along the hierarchy.
-void check_transforms(const Scene& scene) {
-    const ScenePose pose = pose_scene(scene, 0);
-    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        for (int column = 0; column < 4; ++column) {
-            const glm::vec4& c = pose.world_from_node[i][column];
-            if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z) || !std::isfinite(c.w)) {
-                refuse(scene.name, object_name("node", i, scene.nodes[i].name), "world transform is not finite");
-            }
-        }
-    }
-}
-
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     GltfDocument document = read_gltf_document(file, options);
-    GltfBufferViews views(document);
+    GltfBufferViews views(document, options.limits.max_file_bytes);
     GltfAccessors accessors(document, views);
     GltfNodes nodes = read_nodes(document);
     GltfSurfaces surfaces = read_surfaces(document);
@@ -56,7 +43,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     scene.nodes = std::move(nodes.nodes);
     scene.meshes = std::move(meshes.meshes);
     scene.instances = std::move(meshes.instances);
-    check_transforms(scene);
+    check_extent(scene);
     scene.environment = read_environment(options);
     scene.images = decode_images(document, views, options.limits, surfaces.textures);
     scene.textures = std::move(surfaces.textures);

@@ -8,6 +8,7 @@ namespace fieldcast::scene {
 namespace {
 
 constexpr std::size_t kMaxShownName = 60;
+constexpr std::size_t kMaxKinds = 32;
 
 std::string shown(std::string_view name) {
     std::string text(name.substr(0, kMaxShownName));
@@ -34,13 +35,18 @@ std::string object_name(std::string_view kind, std::size_t index, std::string_vi
 }
 
 void LoadWarnings::add(const std::string& what, const std::string& unit) {
-    ++counts_[{what, unit}];
+    const std::pair key(what, unit);
+    if (counts_.size() < kMaxKinds || counts_.contains(key)) {
+        ++counts_[key];
+    }
 }
 
 std::vector<std::string> LoadWarnings::lines() const {
     std::vector<std::string> lines;
     for (const auto& [key, count] : counts_) {
-        lines.push_back(key.first + " (" + std::to_string(count) + " " + key.second + (count == 1 ? ")" : "s)"));
+        const auto& [what, unit] = key;
+        const std::string shown_count = " (" + std::to_string(count) + " " + unit + (count == 1 ? ")" : "s)");
+        lines.push_back(unit.empty() ? what : what + shown_count);
     }
     return lines;
 }

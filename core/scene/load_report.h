@@ -17,11 +17,11 @@ namespace fieldcast::scene {
 /// "node 12 'lamp'": how messages name an object. Names from files are shortened and freed of control characters.
 std::string object_name(std::string_view kind, std::size_t index, std::string_view name = {});
 
-/// Counts what a file contains but the scene ignores; one line per kind.
+/// Counts what a file contains but the scene ignores; one line per kind, at most 32 kinds.
 class LoadWarnings {
 public:
-    /// `what` is a claim ("skins are ignored"), `unit` what is counted ("node").
-    void add(const std::string& what, const std::string& unit);
+    /// `what` is a claim ("skins are ignored"), `unit` what is counted ("node"); without unit there is no count.
+    void add(const std::string& what, const std::string& unit = {});
     /// "skins are ignored (3 nodes)", in alphabetical order.
     std::vector<std::string> lines() const;
 
