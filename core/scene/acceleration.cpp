@@ -18,6 +18,7 @@ namespace {
 
 constexpr VkFormat kTexelFormat = VK_FORMAT_R32G32B32A32_UINT;
 constexpr std::uint64_t kTexelBytes = 16;
+static_assert(kMaxInstances <= 1U << shared::kRayQueryAlphaShift);
 
 double ms_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -107,8 +108,9 @@ struct DeviceRayQuery {
             const Instance& instance = scene.instances[i];
             const Material& material = scene.materials[scene.meshes[instance.mesh].material];
             if (!scene.meshes[instance.mesh].triangles.empty()) {
-                instances.push_back({pose.world_from_node[instance.node], i, meshes[instance.mesh].address(),
-                                     material.alpha_mode == AlphaMode::kOpaque, 0xFF});
+                const auto alpha_mode = static_cast<std::uint32_t>(material.alpha_mode);
+                instances.push_back({pose.world_from_node[instance.node], i | alpha_mode << shared::kRayQueryAlphaShift,
+                                     meshes[instance.mesh].address(), material.alpha_mode == AlphaMode::kOpaque, 0xFF});
             }
         }
         return instances;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traversal through VK_KHR_ray_query; included by lib/traversal.glsl only. One bottom level per mesh; the custom index
-// of an instance is its index in the scene. Geometries that are not opaque report their candidates.
+// Traversal through VK_KHR_ray_query; included by lib/traversal.glsl only. One bottom level per mesh. The custom index
+// of an instance is its index in the scene, with the alpha mode of its material above (kRayQueryAlphaShift).
+// Geometries that are not opaque report their candidates.
 #extension GL_EXT_ray_query : require
-#include "lib/scene_data.glsl"
 
 layout(set = 0, binding = kBindAcceleration) uniform accelerationStructureEXT top_level_;
 
-uint alpha_mode_of(uint instance) {
-    uint material = load_placement_tail(instance).y;
-    return load_material(material).flags & kMaterialAlphaMask;
+uint instance_of(uint custom_index) {
+    return custom_index & ((1u << kRayQueryAlphaShift) - 1u);
 }
 
 Hit trace_closest(vec3 origin, vec3 direction, float t_min, float t_max, uint mode, uint seed) {
@@ -19,17 +18,19 @@ Hit trace_closest(vec3 origin, vec3 direction, float t_min, float t_max, uint mo
     }
     rayQueryInitializeEXT(query, top_level_, flags, 0xFFu, origin, t_min, direction, t_max);
     while (rayQueryProceedEXT(query)) {
-        uint instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+        uint custom_index = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+        uint instance = instance_of(custom_index);
         uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, false);
         vec2 barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
-        if (alpha_accepts(alpha_mode_of(instance), mode, seed, instance, primitive, barycentrics)) {
+        if (alpha_accepts(custom_index >> kRayQueryAlphaShift, mode, seed, instance, primitive, barycentrics)) {
             rayQueryConfirmIntersectionEXT(query);
         }
     }
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
         return Hit(t_max, kNoInstance, 0u, vec2(0.0));
     }
-    return Hit(rayQueryGetIntersectionTEXT(query, true), rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
+    return Hit(rayQueryGetIntersectionTEXT(query, true),
+               instance_of(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true)),
                rayQueryGetIntersectionPrimitiveIndexEXT(query, true),
                rayQueryGetIntersectionBarycentricsEXT(query, true));
 }
@@ -40,10 +41,11 @@ float trace_transmittance(vec3 origin, vec3 direction, float t_max) {
     float transmittance = 1.0;
     rayQueryInitializeEXT(query, top_level_, flags, 0xFFu, origin, 0.0, direction, t_max);
     while (rayQueryProceedEXT(query)) {
-        uint instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+        uint custom_index = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+        uint instance = instance_of(custom_index);
         uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, false);
         vec2 barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, false);
-        if (alpha_mode_of(instance) == kAlphaBlend) {
+        if (custom_index >> kRayQueryAlphaShift == kAlphaBlend) {
             transmittance *= 1.0 - surface_alpha(instance, primitive, barycentrics);
         } else if (surface_is_solid_at(instance, primitive, barycentrics)) {
             rayQueryConfirmIntersectionEXT(query);

@@ -61,5 +61,8 @@ struct PlacedLevel {
 const uint kSpecialiseAlpha = 100u;    // bool: some material is MASK or BLEND
 const uint kSpecialiseTwoLevel = 102u; // bool: the BVH has a top level
 
+// Ray query: alpha mode of an instance's material in its custom index, above the index of the instance.
+const uint kRayQueryAlphaShift = 20u;
+
 SHARED_END
 #endif

@@ -1,0 +1,10 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// What is left of the light along each ray of a buffer, with alpha tests; for tests and `bench trace`.
+#extension GL_GOOGLE_include_directive : require
+#include "lib/surface.glsl"
+#include "lib/traversal_rays.glsl"
+
+void main() {
+    find_any(gl_GlobalInvocationID.x);
+}
