@@ -24,8 +24,8 @@ struct ChannelInfo {
     ViewGrid largest_grid;                     ///< its geometry is the lattice of the channel
     float frames_per_second = 30.0F;           ///< at most
     GuardBand guard_band;
-    std::string camera;              ///< name of the camera node
-    bool is_camera_animated = false; ///< false: it stays where it is
+    std::string camera;                                   ///< name of the camera node
+    bool is_camera_animated = false;                      ///< false: it stays where it is
     std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
     std::uint64_t max_view_pixels = 0;                    ///< of all views of a frame, over all clients
 };

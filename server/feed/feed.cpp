@@ -17,8 +17,9 @@ std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_
     if (!std::holds_alternative<ViewsWish>(wish) || pixels <= info_.max_view_pixels) {
         return std::nullopt;
     }
-    return "channel '" + info_.name + "' would render " + std::to_string(pixels) + " pixels per frame for all clients, at most " +
-           std::to_string(info_.max_view_pixels) + "; ask for fewer or smaller views or share the lattice of others";
+    return "channel '" + info_.name + "' would render " + std::to_string(pixels) +
+           " pixels per frame for all clients, at most " + std::to_string(info_.max_view_pixels) +
+           "; ask for fewer or smaller views or share the lattice of others";
 }
 
 tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,

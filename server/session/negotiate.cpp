@@ -90,7 +90,7 @@ Chosen<glm::uvec2> choose_size(const v1::Configure& wanted, const feed::ChannelI
     if (asked == glm::uvec2(0)) {
         return source;
     }
-    const std::string range = " px asked, 1 to " ;
+    const std::string range = " px asked, 1 to ";
     if (asked.x == 0 || asked.x > source.x) {
         return invalid("view_width_px",
                        std::to_string(asked.x) + range + std::to_string(source.x) + " (the source's) allowed");
@@ -231,8 +231,8 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Chan
     if (!chunk_bytes) {
         return tl::unexpected(chunk_bytes.error());
     }
-    const std::uint64_t bytes = wanted.max_bytes_in_flight() == 0 ? limits.max_bytes_in_flight
-                                                                  : wanted.max_bytes_in_flight();
+    const std::uint64_t bytes =
+        wanted.max_bytes_in_flight() == 0 ? limits.max_bytes_in_flight : wanted.max_bytes_in_flight();
     return Configuration{.feed = *channel,
                          .mode = *mode,
                          .view_set = *view_set,

@@ -26,8 +26,8 @@ nanoseconds decode_time(const v1::FrameAck& ack) {
 
 } // namespace
 
-Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits,
-                 feed::FrameCallback on_frame, TimePoint now)
+Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
+                 TimePoint now)
     : channels_(std::move(channels)), limits_(limits), on_frame_(std::move(on_frame)),
       credits_(1.0, limits.max_bytes_in_flight), next_heartbeat_(now + limits.heartbeat_interval),
       configure_by_(now + limits.configure_deadline) {}
@@ -100,7 +100,8 @@ void Session::drop_old_configuration() {
 }
 
 void Session::handle(const v1::FrameAck& ack, TimePoint now) {
-    const bool is_first = credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
+    const bool is_first =
+        credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
     if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
         ++counts_.frames_failed;
     }
@@ -111,16 +112,28 @@ void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
         counts_.drops.add(DropReason::kReconfigured);
         return;
     }
-    const auto interval = std::chrono::duration_cast<TimePoint::duration>(
-        std::chrono::duration<double>(1.0 / static_cast<double>(configuration_->frames_per_second)));
-    if (now + interval / 4 < next_frame_due_) { // a quarter: frames of the channel are not evenly spaced
+    if (is_too_soon(now)) {
         counts_.drops.add(DropReason::kRateCap);
         return;
     }
-    next_frame_due_ = std::max(next_frame_due_ + interval, now);
     if (mailbox_.put(frame)) {
         counts_.drops.add(sending_ ? DropReason::kSending : DropReason::kNoCredit);
     }
+}
+
+bool Session::is_too_soon(TimePoint now) {
+    const float fps = configuration_->frames_per_second;
+    if (fps >= configuration_->feed->info().frames_per_second) {
+        return false;
+    }
+    const auto interval =
+        std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(1.0 / static_cast<double>(fps)));
+    if (now + interval / 4 < next_frame_due_) { // a quarter: frames of the channel are not evenly spaced
+        return true;
+    }
+    const bool is_late = now >= next_frame_due_ + interval;
+    next_frame_due_ = (is_late ? now : next_frame_due_) + interval;
+    return false;
 }
 
 void Session::go_away(const std::string& reason, TimePoint at) {

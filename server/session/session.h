@@ -71,6 +71,7 @@ private:
     void handle(const v1::FrameAck& ack, TimePoint now);
     std::optional<Refusal> admit(const Configuration& wanted);
     void drop_old_configuration();
+    bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
 
     std::optional<wire::WireChunk> next_control(TimePoint now);
     v1::ServerMessage depart(TimePoint now);

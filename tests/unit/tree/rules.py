@@ -35,7 +35,7 @@ LIBRARIES = {
     "toml": ("core/base",),
     "spdlog/": ("core/base",),
     "grpc": ("server/service", "client/net"),
-    "fieldcast/v1/": ("core/wire", "server/service", "client/net"),
+    "fieldcast/v1/": ("core/wire", "server/session", "server/service", "client/net"),
     "google/protobuf/": ("core/wire", "server/service", "client/net"),
     "nats": ("server/bus",),
     "prometheus/": ("server/ops",),

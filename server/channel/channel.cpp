@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/channel/channel.h"
+
+#include "core/base/log.h"
+#include "server/channel/frame_encoder.h"
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+
+namespace fieldcast::channel {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Sleeps until `time`, or until stopped.
+void wait_until(Clock::time_point time, const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock lock(mutex);
+    never.wait_until(lock, stop, time, [] { return false; });
+}
+
+/// Runs a thread's work; a failure ends the channel, not the process.
+template <class Work> void run(feed::Feed& feed, const Work& work) {
+    try {
+        work();
+    } catch (const std::exception& problem) {
+        log::error("channel failed", {{"channel", feed.info().name}, {"problem", problem.what()}});
+        feed.set_failed();
+    }
+}
+
+} // namespace
+
+Channel::Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice)
+    : renderer_(device, config, choice), clock_(config, renderer_.scene()),
+      feed_(std::make_shared<feed::Feed>(renderer_.info())),
+      encode_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { encode_loop(stop); }); }),
+      render_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { render_loop(stop); }); }) {}
+
+Channel::~Channel() {
+    render_thread_.request_stop(); // both, before either is joined: each may wait for the other
+    encode_thread_.request_stop();
+}
+
+void Channel::render_loop(const std::stop_token& stop) {
+    const auto interval = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(1.0 / static_cast<double>(feed_->info().frames_per_second)));
+    std::uint64_t frame_id = 0;
+    std::uint64_t reported_samples = 0;
+    while (feed_->wait_for_demand(stop)) {
+        const feed::Demand demand = feed_->demand();
+        if (demand.empty()) {
+            continue; // the last one has just gone
+        }
+        const auto begin = Clock::now();
+        RenderedFrame frame = renderer_.render(++frame_id, clock_.next(begin), demand);
+        log_frame(frame);
+        const std::uint64_t invalid_samples = renderer_.invalid_sample_count();
+        if (invalid_samples > reported_samples) {
+            log::warn("invalid samples", {{"channel", feed_->info().name}, {"count", invalid_samples}});
+            reported_samples = invalid_samples;
+        }
+        if (!rendered_.put(std::move(frame), stop)) {
+            return;
+        }
+        wait_until(begin + interval, stop);
+    }
+}
+
+void Channel::encode_loop(const std::stop_token& stop) {
+    WorkerPool pool;
+    while (const auto frame = rendered_.take(stop)) {
+        const auto begin = Clock::now();
+        const feed::FramePtr encoded = encode(*frame, pool);
+        const std::chrono::duration<double, std::milli> encode_time = Clock::now() - begin;
+        log::debug("frame encoded", {{"frame", frame->header.frame_id}, {"ms", encode_time.count()}});
+        feed_->publish(encoded);
+    }
+}
+
+void Channel::log_frame(const RenderedFrame& frame) const {
+    const double render_ms = static_cast<double>(frame.times.render_end_ns - frame.times.render_begin_ns) * 1e-6;
+    log::debug("frame rendered", {{"channel", feed_->info().name},
+                                  {"frame", frame.header.frame_id},
+                                  {"scene_time_s", static_cast<double>(frame.header.scene_time_ns) * 1e-9},
+                                  {"cut", frame.header.cut},
+                                  {"ms", render_ms}});
+    for (const StageTime& time : frame.header.render_times) {
+        log::debug("stage", {{"frame", frame.header.frame_id}, {"stage", time.stage}, {"ms", time.ms}});
+    }
+}
+
+} // namespace fieldcast::channel

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/channel/channel_clock.h"
+
+#include <cmath>
+
+namespace fieldcast::channel {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestGap{500};
+
+std::int64_t nanoseconds_of(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * 1e9));
+}
+
+/// SplitMix64 of both numbers: seeds of neighbouring frames have nothing in common.
+std::uint32_t frame_seed(std::uint32_t seed, std::uint32_t frame) {
+    std::uint64_t z = ((static_cast<std::uint64_t>(seed) << 32) | frame) + 0x9E3779B97F4A7C15ULL;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
+}
+
+} // namespace
+
+ChannelClock::ChannelClock(const ops::Config& config, const scene::Scene& scene)
+    : scene_(scene), mode_(config.clock), fps_(static_cast<double>(config.frames_per_second)),
+      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s), seed_(config.seed) {}
+
+FrameMoment ChannelClock::next(TimePoint now) {
+    if (is_first_) {
+        begin_ = now;
+    }
+    const bool has_loop_ended = loop_frames_ > 0 && frame_ == loop_frames_;
+    frame_ = has_loop_ended ? 0 : frame_;
+    FrameMoment moment;
+    moment.scene_time_ns = scene_time_ns(now);
+    moment.seed = frame_seed(seed_, frame_);
+    const std::int64_t loop = scene::loop_index(scene_, moment.scene_time_ns);
+    const bool has_jumped = mode_ == ops::ClockMode::kReal && !fixed_time_s_ && now - previous_ > kLongestGap;
+    moment.cut = is_first_ || has_loop_ended || loop != previous_loop_ || (has_jumped && scene_.duration_s > 0.0);
+    previous_loop_ = loop;
+    previous_ = now;
+    is_first_ = false;
+    ++frame_;
+    return moment;
+}
+
+std::int64_t ChannelClock::scene_time_ns(TimePoint now) {
+    if (fixed_time_s_) {
+        return nanoseconds_of(*fixed_time_s_);
+    }
+    if (mode_ == ops::ClockMode::kReal) {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(now - begin_).count();
+    }
+    return nanoseconds_of(frame_ / fps_);
+}
+
+} // namespace fieldcast::channel

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/scene/scene.h"
+#include "server/ops/config.h"
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+namespace fieldcast::channel {
+
+/// When a frame shows the scene, and what follows from that.
+struct FrameMoment {
+    std::int64_t scene_time_ns = 0;
+    bool cut = false;
+    std::uint32_t seed = 0;
+};
+
+/// Scene time of one channel. Starts at 0 with the first frame.
+class ChannelClock {
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    /// `scene` must outlive it.
+    ChannelClock(const ops::Config& config, const scene::Scene& scene);
+
+    /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over, and
+    /// in real time also a pause of more than half a second (nobody was watching).
+    FrameMoment next(TimePoint now);
+
+private:
+    std::int64_t scene_time_ns(TimePoint now);
+
+    const scene::Scene& scene_;
+    const ops::ClockMode mode_;
+    const double fps_;
+    const std::uint32_t loop_frames_;
+    const std::optional<double> fixed_time_s_;
+    const std::uint32_t seed_;
+    std::uint32_t frame_ = 0; ///< since the start, or since the loop of `loop_frames_` began
+    bool is_first_ = true;
+    TimePoint begin_{};
+    TimePoint previous_{};
+    std::int64_t previous_loop_ = 0;
+};
+
+} // namespace fieldcast::channel

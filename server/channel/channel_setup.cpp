@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a FrameRenderer settles once, when its channel starts.
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/render/setup.h"
+#include "core/scene/bundle.h"
+#include "core/scene/gltf_loader.h"
+#include "server/channel/frame_renderer.h"
+
+namespace fieldcast::channel {
+
+FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel)
+    : device_(device), config_(config), settings_(config.settings) {
+    info_.name = channel.name;
+    load(channel);
+    settle_lattice();
+    settle_guard_band();
+    warm_up();
+}
+
+void FrameRenderer::load(const ops::ChannelChoice& channel) {
+    scene::LoadOptions options;
+    options.environment = config_.environment;
+    options.sky = config_.sky.value_or(options.sky);
+    scene_ = std::make_unique<scene::Scene>(scene::load_scene(channel.scene, options));
+    for (const std::string& warning : scene_->warnings) {
+        log::warn("scene", {{"channel", info_.name}, {"warning", warning}});
+    }
+    camera_node_ = scene::find_camera(*scene_, config_.camera);
+    if (camera_node_ == nullptr) {
+        throw UserError(channel.scene.string() +
+                        (config_.camera.empty() ? ": has no camera" : ": has no camera '" + config_.camera + "'"));
+    }
+    info_.scene_hash = scene_->hash;
+    info_.bundle = std::make_shared<const std::vector<std::byte>>(scene::make_bundle(channel.scene, options));
+    const scene::Traversal traversal = scene::choose_traversal(device_, config_.traversal);
+    gpu_scene_ = std::make_unique<scene::GpuScene>(device_, *scene_, traversal);
+    source_renderer_ = std::make_unique<render::SourceRenderer>(device_, *gpu_scene_);
+    grid_renderer_ = std::make_unique<render::GridRenderer>(device_, *gpu_scene_);
+}
+
+void FrameRenderer::settle_lattice() {
+    const bool is_node_animated = scene_->nodes[camera_node_->node].is_animated;
+    info_.source_width_px = config_.width_px;
+    info_.source_height_px = config_.height_px;
+    info_.fovy_rad = camera_node_->fovy_rad;
+    info_.frames_per_second = config_.frames_per_second;
+    info_.camera = camera_node_->name;
+    info_.is_camera_animated = is_node_animated && !config_.has_fixed_camera && !config_.fixed_time_s;
+    info_.max_view_pixels = config_.max_channel_pixels;
+    info_.largest_grid = config_.largest_grid;
+    info_.largest_grid.geometry = config_.lattice;
+    constexpr float kDefaultSpacing_m = 0.03F;
+    const float spacing_m = config_.spacing_m.value_or(camera_node_->spacing_m.value_or(kDefaultSpacing_m));
+    info_.largest_grid.geometry.spacing_m = glm::vec2(spacing_m);
+}
+
+void FrameRenderer::settle_guard_band() {
+    const auto start_ns = static_cast<std::int64_t>(config_.fixed_time_s.value_or(0.0) * 1e9);
+    gpu_scene_->pose(start_ns, true);
+    const Camera source = render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
+    if (config_.has_fixed_camera) {
+        fixed_camera_ = source;
+    }
+    info_.guard_band = config_.guard_band;
+    if (config_.guard_band_mode == ops::GuardBandMode::kFixed) {
+        return;
+    }
+    const GuardBandChoice choice = render::measure_guard_band(device_, *gpu_scene_, source, info_.largest_grid);
+    info_.guard_band = choice.band;
+    log::info("guard band settled", {{"channel", info_.name},
+                                     {"left_px", choice.band.left_px},
+                                     {"right_px", choice.band.right_px},
+                                     {"top_px", choice.band.top_px},
+                                     {"bottom_px", choice.band.bottom_px},
+                                     {"removed_percent", choice.removed_share * 100.0},
+                                     {"extra_percent", choice.extra_share * 100.0}});
+}
+
+void FrameRenderer::warm_up() {
+    const auto start_ns = static_cast<std::int64_t>(config_.fixed_time_s.value_or(0.0) * 1e9);
+    const FrameHeader header = pose(0, {.scene_time_ns = start_ns, .cut = true, .seed = config_.seed});
+    const render::SourcePlanes& source = source_renderer_->render(header);
+    if (config_.has_auto_exposure) {
+        settings_.exposure = render::auto_exposure(*grid_renderer_, source);
+    }
+    ViewGrid grid = info_.largest_grid;
+    grid.rows = grid.cols = 2;
+    grid_renderer_->render(source, {.geometry = grid.geometry,
+                                    .fovy_rad = info_.fovy_rad,
+                                    .width_px = config_.width_px,
+                                    .height_px = config_.height_px,
+                                    .positions = lattice_positions(grid)});
+    log::info("exposure settled",
+              {{"channel", info_.name}, {"exposure", settings_.exposure}, {"is_auto", config_.has_auto_exposure}});
+}
+
+} // namespace fieldcast::channel

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/channel/frame_renderer.h"
+
+#include "core/render/setup.h"
+
+#include <algorithm>
+
+namespace fieldcast::channel {
+
+namespace {
+
+std::int64_t steady_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+std::vector<PlaneSemantic> semantics_of(const std::vector<wire::PlaneChoice>& choices) {
+    std::vector<PlaneSemantic> semantics;
+    for (const wire::PlaneChoice& choice : choices) {
+        if (std::ranges::find(semantics, choice.semantic) == semantics.end()) {
+            semantics.push_back(choice.semantic);
+        }
+    }
+    return semantics;
+}
+
+/// Views to render in one batch, and who gets them.
+struct Batch {
+    std::vector<wire::ViewFormat> formats;
+    render::ViewRequest request;
+};
+
+bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b) {
+    b.codec = a.codec;
+    return a == b;
+}
+
+std::vector<Batch> batches_of(const feed::Demand& demand) {
+    std::vector<Batch> batches;
+    for (const feed::ViewDemand& set : demand.views) {
+        const wire::ViewFormat& format = set.format;
+        auto batch =
+            std::ranges::find_if(batches, [&](const Batch& b) { return is_same_batch(b.formats.front(), format); });
+        if (batch == batches.end()) {
+            batch = batches.insert(batch, Batch{.formats = {},
+                                                .request = {.geometry = format.geometry,
+                                                            .fovy_rad = format.fovy_rad,
+                                                            .width_px = format.width_px,
+                                                            .height_px = format.height_px,
+                                                            .positions = {}}});
+        }
+        batch->formats.push_back(format);
+        auto& positions = batch->request.positions;
+        positions.insert(positions.end(), set.positions.begin(), set.positions.end());
+        std::ranges::sort(positions);
+        const auto repeated = std::ranges::unique(positions);
+        positions.erase(repeated.begin(), repeated.end());
+    }
+    return batches;
+}
+
+} // namespace
+
+FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& moment) {
+    gpu_scene_->pose(moment.scene_time_ns, moment.cut);
+    FrameHeader header;
+    header.frame_id = frame_id;
+    header.scene_time_ns = moment.scene_time_ns;
+    header.cut = moment.cut;
+    header.seed = moment.seed;
+    header.source = fixed_camera_
+                        ? *fixed_camera_
+                        : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
+    header.guard_band = info_.guard_band;
+    header.settings = settings_;
+    return header;
+}
+
+RenderedFrame FrameRenderer::render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand) {
+    RenderedFrame frame;
+    frame.times.pose_sampled_ns = steady_ns();
+    const FrameHeader header = pose(frame_id, moment);
+    frame.times.render_begin_ns = steady_ns();
+    const render::SourcePlanes& source = source_renderer_->render(header);
+    frame.header = source.header();
+    if (!demand.planes.empty()) {
+        frame.choices = demand.planes;
+        frame.source = source.download(semantics_of(demand.planes));
+    }
+    frame.views = render_views(source, demand);
+    frame.times.render_end_ns = steady_ns();
+    return frame;
+}
+
+std::vector<RenderedViews> FrameRenderer::render_views(const render::SourcePlanes& source, const feed::Demand& demand) {
+    std::vector<RenderedViews> rendered;
+    for (Batch& batch : batches_of(demand)) {
+        rendered.push_back(
+            {.formats = std::move(batch.formats), .views = grid_renderer_->render(source, batch.request)});
+    }
+    return rendered;
+}
+
+std::uint64_t FrameRenderer::invalid_sample_count() const {
+    return source_renderer_->invalid_sample_count() + grid_renderer_->invalid_sample_count();
+}
+
+} // namespace fieldcast::channel

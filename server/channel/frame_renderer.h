@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/device.h"
+#include "core/render/grid_renderer.h"
+#include "core/render/source_renderer.h"
+#include "core/scene/gpu_scene.h"
+#include "server/channel/channel_clock.h"
+#include "server/feed/channel_info.h"
+#include "server/feed/encoded_frame.h"
+#include "server/ops/config.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fieldcast::channel {
+
+/// Views of one geometry and size, and the formats in which somebody wants them.
+struct RenderedViews {
+    std::vector<wire::ViewFormat> formats; ///< differ in their codec only
+    Views views;
+};
+
+/// One frame, not yet encoded.
+struct RenderedFrame {
+    FrameHeader header;
+    wire::ServerTimes times;
+    std::optional<SourceFrame> source; ///< the planes named in `choices`
+    std::vector<wire::PlaneChoice> choices;
+    std::vector<RenderedViews> views;
+};
+
+/// A scene on the device with both renderers, for one channel. Not thread-safe; may be used by one thread after
+/// another.
+class FrameRenderer {
+public:
+    /// Loads the scene, settles guard band and exposure, renders once so that every kernel is compiled.
+    /// Throws UserError if the scene is not usable.
+    FrameRenderer(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel);
+
+    const feed::ChannelInfo& info() const { return info_; }
+    const scene::Scene& scene() const { return *scene_; }
+
+    RenderedFrame render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand);
+
+    std::uint64_t invalid_sample_count() const; ///< must stay 0
+
+private:
+    void load(const ops::ChannelChoice& channel);
+    void settle_lattice();
+    void settle_guard_band();
+    void warm_up();
+
+    FrameHeader pose(std::uint64_t frame_id, const FrameMoment& moment);
+    std::vector<RenderedViews> render_views(const render::SourcePlanes& source, const feed::Demand& demand);
+
+    const gpu::Device& device_;
+    const ops::Config& config_;
+    std::unique_ptr<scene::Scene> scene_; ///< at a fixed address: the renderers refer to it
+    const scene::CameraNode* camera_node_ = nullptr;
+    std::unique_ptr<scene::GpuScene> gpu_scene_;
+    std::unique_ptr<render::SourceRenderer> source_renderer_;
+    std::unique_ptr<render::GridRenderer> grid_renderer_;
+    std::optional<Camera> fixed_camera_;
+    RenderSettings settings_;
+    feed::ChannelInfo info_;
+};
+
+} // namespace fieldcast::channel

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/scene/bundle.h"
+#include "server/channel/channel.h"
+#include "server/ops/flags.h"
+#include "server/ops/port_file.h"
+#include "server/ops/signals.h"
+#include "server/service/grpc_server.h"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+
+namespace {
+
+using namespace fieldcast;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kOk = 0;
+constexpr int kMachineFailed = 1;
+constexpr int kUserError = 2;
+
+constexpr std::chrono::milliseconds kPollInterval{100};
+constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
+
+using Channels = std::vector<std::unique_ptr<channel::Channel>>;
+
+Channels start_channels(const gpu::Device& device, const ops::Config& config) {
+    Channels channels;
+    for (const ops::ChannelChoice& choice : config.channels) {
+        const auto begin = Clock::now();
+        channels.push_back(std::make_unique<channel::Channel>(device, config, choice));
+        const feed::ChannelInfo& info = channels.back()->feed()->info();
+        const std::chrono::duration<double> duration = Clock::now() - begin;
+        log::info("channel ready", {{"channel", info.name},
+                                    {"scene", scene::to_hex(info.scene_hash)},
+                                    {"camera", info.camera},
+                                    {"width_px", info.source_width_px},
+                                    {"height_px", info.source_height_px},
+                                    {"spacing_m", info.largest_grid.geometry.spacing_m.x},
+                                    {"seconds", duration.count()}});
+    }
+    return channels;
+}
+
+std::vector<std::shared_ptr<feed::Feed>> feeds_of(const Channels& channels) {
+    std::vector<std::shared_ptr<feed::Feed>> feeds;
+    for (const auto& channel : channels) {
+        feeds.push_back(channel->feed());
+    }
+    return feeds;
+}
+
+/// Until a signal, or until a channel fails.
+bool serve(const ops::StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
+    const auto has_failed = [](const std::shared_ptr<feed::Feed>& feed) { return feed->has_failed(); };
+    while (!signals.wait(kPollInterval)) {
+        if (std::ranges::any_of(feeds, has_failed)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Until every client has gone, a second signal, or the limit.
+void drain(const ops::StopSignals& signals, service::GrpcServer& server, const std::string& reason) {
+    server.begin_drain(reason);
+    const auto deadline = Clock::now() + kDrainLimit;
+    while (Clock::now() < deadline && !server.wait_until_drained(Clock::now() + kPollInterval)) {
+        if (signals.wait(std::chrono::milliseconds(0))) {
+            log::warn("stopping at once", {{"sessions", server.session_count()}});
+            return;
+        }
+    }
+    log::info("drained", {{"sessions", server.session_count()}});
+}
+
+int run(const ops::Config& config, const ops::StopSignals& signals) {
+    log::set_level(config.log_level);
+    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
+    const Channels channels = start_channels(device, config);
+    const auto feeds = feeds_of(channels);
+    service::GrpcServer server(config.listen, feeds, config.limits);
+    std::optional<ops::PortFile> port_file;
+    if (config.port_file) {
+        port_file.emplace(*config.port_file, server.port());
+    }
+    log::info("SERVING",
+              {{"listen", config.listen.host + ":" + std::to_string(server.port())}, {"channels", channels.size()}});
+    const bool is_signal = serve(signals, feeds);
+    drain(signals, server, is_signal ? "the server is shutting down" : "a channel failed");
+    return is_signal ? kOk : kMachineFailed;
+}
+
+int start(int argc, char** argv) {
+    const ops::StopSignals signals; // before any thread exists
+    const ops::Invocation invocation = ops::read_flags(argc, argv);
+    for (const std::string& problem : invocation.problems) {
+        std::cerr << "fieldcast-server: " << problem << '\n';
+    }
+    std::cout << invocation.text;
+    if (!invocation.problems.empty()) {
+        std::cerr << "fieldcast-server --help tells the flags\n";
+        return kUserError;
+    }
+    switch (invocation.kind) {
+    case ops::Invocation::Kind::kPrint:
+        return kOk;
+    case ops::Invocation::Kind::kCheck:
+        std::cout << "the configuration is fine\n";
+        return kOk;
+    case ops::Invocation::Kind::kServe:
+        break;
+    }
+    return run(invocation.config, signals);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return start(argc, argv);
+    } catch (const UserError& error) {
+        std::cerr << "fieldcast-server: " << error.what() << '\n';
+        return kUserError;
+    } catch (const std::exception& error) {
+        std::cerr << "fieldcast-server: " << error.what() << '\n';
+        return kMachineFailed;
+    }
+}

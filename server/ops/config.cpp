@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/ops/config.h"
+
+#include "server/feed/channel_info.h"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace fieldcast::ops {
+
+namespace {
+
+using Problems = std::vector<std::string>;
+
+constexpr std::uint32_t kMaxSamples = 65536; // as the wire's RenderSettings
+constexpr std::uint32_t kMaxBounces = 256;
+constexpr std::uint32_t kMaxSourceSide = 8192; // leaves room for a guard band below kMaxPlaneSide
+
+/// Adds "flag: value: what is allowed" unless `is_right`.
+template <class T>
+void expect(Problems& problems, bool is_right, const char* flag, const T& value, const char* allowed) {
+    if (!is_right) {
+        std::ostringstream line;
+        line << flag << ' ' << value << ": " << allowed;
+        problems.push_back(line.str());
+    }
+}
+
+bool is_loopback(const std::string& host) {
+    in_addr four{};
+    if (inet_pton(AF_INET, host.c_str(), &four) == 1) {
+        return (ntohl(four.s_addr) >> 24) == 127;
+    }
+    return host == "localhost" || host == "[::1]";
+}
+
+void check_channels(const Config& config, Problems& problems) {
+    if (config.channels.empty()) {
+        problems.emplace_back("--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE");
+    }
+    std::set<std::string> names;
+    for (const ChannelChoice& channel : config.channels) {
+        const bool has_good_length = !channel.name.empty() && channel.name.size() <= feed::kMaxChannelNameBytes;
+        expect(problems, has_good_length, "--channel", channel.name, "a name has 1 to 64 bytes");
+        expect(problems, names.insert(channel.name).second, "--channel", channel.name,
+               "two channels have this name; tell them apart with --channel NAME=FILE");
+        std::error_code ignored;
+        expect(problems, std::filesystem::is_regular_file(channel.scene, ignored), "--scene", channel.scene.string(),
+               "there is no such file");
+    }
+    std::error_code ignored;
+    if (config.environment && !std::filesystem::is_regular_file(*config.environment, ignored)) {
+        problems.push_back("--environment " + config.environment->string() + ": there is no such file");
+    }
+}
+
+void check_lattice(const Config& config, Problems& problems) {
+    const auto is_side = [](std::uint32_t px) { return px >= 16 && px <= kMaxSourceSide; };
+    expect(problems, is_side(config.width_px) && is_side(config.height_px), "--size",
+           std::to_string(config.width_px) + "x" + std::to_string(config.height_px), "16 to 8192 pixels on each side");
+    const float fps = config.frames_per_second;
+    expect(problems, fps > 0.0F && fps <= 240.0F, "--fps", fps, "more than 0, at most 240");
+    const float spacing = config.spacing_m.value_or(0.0F);
+    expect(problems, std::isfinite(spacing) && spacing >= 0.0F, "--spacing", spacing, "finite, not negative, metres");
+    expect(problems, config.lattice.convergence_m > 0.0F, "--convergence", config.lattice.convergence_m,
+           "more than 0 metres, or inf");
+    ViewGrid grid = config.largest_grid;
+    if (const auto problem = grid_problem(grid)) {
+        problems.push_back("--largest-grid: " + *problem);
+    }
+    const GuardBand& band = config.guard_band;
+    expect(problems, std::max({band.left_px, band.right_px, band.top_px, band.bottom_px}) <= 2048, "--guard-band",
+           "too wide", "at most 2048 pixels on each side");
+}
+
+void check_rendering(const Config& config, Problems& problems) {
+    const RenderSettings& settings = config.settings;
+    expect(problems, settings.samples_per_pixel >= 1 && settings.samples_per_pixel <= kMaxSamples, "--spp",
+           settings.samples_per_pixel, "1 to 65536");
+    expect(problems, settings.max_bounces <= kMaxBounces, "--bounces", settings.max_bounces, "0 to 256");
+    expect(problems, settings.temporal_alpha > 0.0F && settings.temporal_alpha <= 1.0F, "--alpha",
+           settings.temporal_alpha, "more than 0, at most 1");
+    expect(problems, std::isfinite(settings.exposure) && settings.exposure > 0.0F, "--exposure", settings.exposure,
+           "'auto' or a number above 0");
+    if (config.sky) {
+        const glm::vec3 sky = *config.sky;
+        const float least = std::min({sky.x, sky.y, sky.z});
+        expect(problems, std::isfinite(sky.x + sky.y + sky.z) && least >= 0.0F, "--sky", least,
+               "finite, not negative radiance");
+    }
+    const double time_s = config.fixed_time_s.value_or(0.0);
+    expect(problems, time_s >= 0.0 && time_s <= 1e6, "--time", time_s, "0 to 1e6 seconds");
+    expect(problems, config.loop_frames == 0 || config.clock == ClockMode::kFrames, "--frames", config.loop_frames,
+           "only together with --clock frames");
+    expect(problems, config.environment == std::nullopt || config.sky == std::nullopt, "--sky", "with --environment",
+           "give one of the two");
+}
+
+void check_serving(const Config& config, Problems& problems) {
+    expect(problems, is_loopback(config.listen.host), "--listen", config.listen.host,
+           "only loopback addresses (127.0.0.1, [::1], localhost), as there is no encryption yet");
+    expect(problems, config.listen.port >= 0 && config.listen.port <= 65535, "--listen", config.listen.port,
+           "a port is 0 to 65535");
+    expect(problems, config.listen.port != 0 || config.port_file.has_value(), "--listen", "port 0",
+           "only together with --port-file, which tells the port");
+    expect(problems, config.limits.max_sessions >= 1 && config.limits.max_sessions <= 4096, "--max-sessions",
+           config.limits.max_sessions, "1 to 4096");
+    expect(problems, config.limits.max_sessions_per_peer >= 1, "--max-sessions-per-peer",
+           config.limits.max_sessions_per_peer, "at least 1");
+}
+
+} // namespace
+
+std::vector<std::string> problems_of(const Config& config) {
+    Problems problems;
+    check_channels(config, problems);
+    check_lattice(config, problems);
+    check_rendering(config, problems);
+    check_serving(config, problems);
+    return problems;
+}
+
+} // namespace fieldcast::ops

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/log.h"
+#include "core/lightfield/camera.h"
+#include "core/lightfield/render_settings.h"
+#include "core/lightfield/view_grid.h"
+#include "server/service/grpc_server.h"
+#include "server/session/limits.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fieldcast::ops {
+
+/// One channel: a scene under a name.
+struct ChannelChoice {
+    std::string name;
+    std::filesystem::path scene;
+};
+
+enum class GuardBandMode : std::uint8_t { kAuto, kFixed };
+
+/// How a channel's scene time goes on.
+enum class ClockMode : std::uint8_t {
+    kReal,   ///< wall clock
+    kFrames, ///< 1/fps per rendered frame, however long it took
+};
+
+/// Everything the server can be told, with defaults. Validated once, then never changed.
+struct Config {
+    std::vector<ChannelChoice> channels;
+
+    // Scenes, the same for all channels.
+    std::optional<std::filesystem::path> environment;
+    std::optional<glm::vec3> sky; ///< linear radiance; unset: the loader's default
+    std::string camera;           ///< name of a camera node; empty: "LightField", else the first
+    bool has_fixed_camera = false;
+    std::optional<double> fixed_time_s; ///< freezes the scene at that moment
+    ClockMode clock = ClockMode::kReal;
+    std::uint32_t loop_frames = 0; ///< ClockMode::kFrames: start again after so many; 0: never
+
+    // Source image and lattice.
+    std::uint32_t width_px = 1280;
+    std::uint32_t height_px = 720;
+    float frames_per_second = 30.0F; ///< at most
+    std::optional<float> spacing_m;  ///< unset: the camera's, else 0.03
+    LatticeGeometry lattice;         ///< convergence; spacing is settled when the camera is known
+    ViewGrid largest_grid;           ///< rows and columns
+    GuardBandMode guard_band_mode = GuardBandMode::kAuto;
+    GuardBand guard_band;    ///< kFixed
+    RenderSettings settings; ///< exposure: see `has_auto_exposure`
+    bool has_auto_exposure = true;
+    std::uint32_t seed = 1;
+
+    // Device.
+    std::string traversal = "auto";
+    std::string device; ///< part of its name; empty: best
+    bool has_validation = false;
+
+    // Serving.
+    service::ListenAddress listen;
+    std::optional<std::filesystem::path> port_file;
+    session::Limits limits;
+    std::uint64_t max_channel_pixels = 2 * 72ULL * 1280 * 720; ///< views of one frame, over all clients
+    log::Level log_level = log::Level::kInfo;
+};
+
+/// Everything that is wrong with `config`, each with the flag's name; empty: nothing.
+std::vector<std::string> problems_of(const Config& config);
+
+} // namespace fieldcast::ops

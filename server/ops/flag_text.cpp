@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/ops/flag_text.h"
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace fieldcast::ops {
+
+namespace {
+
+using Problems = std::vector<std::string>;
+
+template <class T> std::optional<T> read_number(std::string_view text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// Exactly as many comma-separated numbers as there is room for.
+template <class T> bool read_list(std::string_view text, std::span<T> numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const bool is_last = i + 1 == numbers.size();
+        const std::size_t end = is_last ? text.size() : text.find(',');
+        const auto number = end == std::string_view::npos ? std::nullopt : read_number<T>(text.substr(0, end));
+        if (!number) {
+            return false;
+        }
+        numbers[i] = *number;
+        text.remove_prefix(is_last ? end : end + 1);
+    }
+    return true;
+}
+
+template <class T> struct Word {
+    std::string_view word;
+    T value;
+};
+
+template <class T, std::size_t kCount>
+void read_word(const char* flag, const std::string& text, const std::array<Word<T>, kCount>& words, T& value,
+               Problems& problems) {
+    std::string allowed;
+    for (const Word<T>& word : words) {
+        if (word.word == text) {
+            value = word.value;
+            return;
+        }
+        allowed += (allowed.empty() ? "" : ", ") + std::string(word.word);
+    }
+    problems.push_back(std::string(flag) + " " + text + ": one of " + allowed);
+}
+
+void read_channels(const FlagText& text, Config& config, Problems& problems) {
+    for (const std::string& scene : text.scenes) {
+        const std::filesystem::path file(scene);
+        config.channels.push_back({.name = file.stem().string(), .scene = file});
+    }
+    for (const std::string& channel : text.channels) {
+        const std::size_t equals = channel.find('=');
+        if (equals == std::string::npos) {
+            problems.push_back("--channel " + channel + ": write NAME=FILE");
+            continue;
+        }
+        config.channels.push_back({.name = channel.substr(0, equals), .scene = channel.substr(equals + 1)});
+    }
+}
+
+void read_sky(const FlagText& text, Config& config, Problems& problems) {
+    std::array<float, 3> sky{};
+    if (text.sky.empty()) {
+        return;
+    }
+    if (!read_list<float>(text.sky, sky)) {
+        problems.push_back("--sky " + text.sky + ": write R,G,B, as in 0.5,0.7,1");
+        return;
+    }
+    config.sky = glm::vec3(sky[0], sky[1], sky[2]);
+}
+
+void read_guard_band(const FlagText& text, Config& config, Problems& problems) {
+    std::array<std::uint32_t, 4> sides{};
+    if (text.guard_band == "auto") {
+        return;
+    }
+    config.guard_band_mode = GuardBandMode::kFixed;
+    if (text.guard_band != "none" && !read_list<std::uint32_t>(text.guard_band, sides)) {
+        problems.push_back("--guard-band " + text.guard_band + ": auto, none, or LEFT,RIGHT,TOP,BOTTOM in pixels");
+    }
+    config.guard_band = {.left_px = sides[0], .right_px = sides[1], .top_px = sides[2], .bottom_px = sides[3]};
+}
+
+void read_lattice(const FlagText& text, Config& config, Problems& problems) {
+    if (const auto size = parse_grid(text.size)) { // WIDTHxHEIGHT reads like ROWSxCOLS
+        config.width_px = size->rows;
+        config.height_px = size->cols;
+    } else {
+        problems.push_back("--size " + text.size + ": write WIDTHxHEIGHT, as in 1280x720");
+    }
+    if (const auto grid = parse_grid(text.largest_grid)) {
+        config.largest_grid = *grid;
+    } else {
+        problems.push_back("--largest-grid " + text.largest_grid + ": write ROWSxCOLS, as in 6x6");
+    }
+    if (const auto metres = read_number<float>(text.convergence)) {
+        config.lattice.convergence_m = *metres;
+    } else {
+        problems.push_back("--convergence " + text.convergence + ": a number of metres, or inf");
+    }
+    if (text.exposure == "auto") {
+        return;
+    }
+    config.has_auto_exposure = false;
+    if (const auto exposure = read_number<float>(text.exposure)) {
+        config.settings.exposure = *exposure;
+    } else {
+        problems.push_back("--exposure " + text.exposure + ": 'auto' or a number above 0");
+    }
+}
+
+void read_listen(const FlagText& text, Config& config, Problems& problems) {
+    const std::size_t colon = text.listen.rfind(':');
+    const auto port = colon == std::string::npos ? std::nullopt : read_number<int>(text.listen.substr(colon + 1));
+    if (!port || colon == 0) {
+        problems.push_back("--listen " + text.listen + ": write HOST:PORT, as in 127.0.0.1:50151");
+        return;
+    }
+    config.listen = {.host = text.listen.substr(0, colon), .port = *port};
+}
+
+} // namespace
+
+void read_text(const FlagText& text, Config& config, Problems& problems) {
+    read_channels(text, config, problems);
+    read_sky(text, config, problems);
+    read_guard_band(text, config, problems);
+    read_lattice(text, config, problems);
+    read_listen(text, config, problems);
+    if (!text.environment.empty()) {
+        config.environment = text.environment;
+    }
+    if (!text.port_file.empty()) {
+        config.port_file = text.port_file;
+    }
+    constexpr std::array kDenoisers{Word{.word = "svgf", .value = Denoiser::kSvgf},
+                                    Word{.word = "none", .value = Denoiser::kNone}};
+    constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},
+                                   Word{.word = "aces", .value = ToneMap::kAces}};
+    constexpr std::array kClocks{Word{.word = "real", .value = ClockMode::kReal},
+                                 Word{.word = "frames", .value = ClockMode::kFrames}};
+    constexpr std::array kLevels{
+        Word{.word = "debug", .value = log::Level::kDebug}, Word{.word = "info", .value = log::Level::kInfo},
+        Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
+    read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
+    read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);
+    read_word("--clock", text.clock, kClocks, config.clock, problems);
+    read_word("--log-level", text.log_level, kLevels, config.log_level, problems);
+}
+
+} // namespace fieldcast::ops

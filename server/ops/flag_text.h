@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/ops/config.h"
+
+#include <string>
+#include <vector>
+
+namespace fieldcast::ops {
+
+/// Flags as they were typed, where the text needs reading; defaults are those of --help.
+struct FlagText {
+    std::vector<std::string> scenes;
+    std::vector<std::string> channels; ///< NAME=FILE
+    std::string environment;
+    std::string sky; ///< R,G,B
+    std::string size = "1280x720";
+    std::string convergence = "inf";
+    std::string largest_grid = "6x6";
+    std::string denoiser = "svgf";
+    std::string exposure = "auto";
+    std::string tone_map = "srgb";
+    std::string guard_band = "auto";
+    std::string clock = "real";
+    std::string listen = "127.0.0.1:50151";
+    std::string port_file;
+    std::string log_level = "info";
+};
+
+/// Fills `config` from `text`; adds a line to `problems` for everything that cannot be read.
+void read_text(const FlagText& text, Config& config, std::vector<std::string>& problems);
+
+} // namespace fieldcast::ops

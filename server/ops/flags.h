@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/ops/config.h"
+
+#include <string>
+#include <vector>
+
+namespace fieldcast::ops {
+
+/// What the command line asks for.
+struct Invocation {
+    enum class Kind : std::uint8_t {
+        kServe,
+        kPrint, ///< only print `text`: --help, --version, --print-config
+        kCheck, ///< only validate
+    };
+    Kind kind = Kind::kServe;
+    Config config;
+    std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
+    std::string text;
+};
+
+/// Reads flags, or a --config file with the same names. Touches nothing but files it checks for existence.
+Invocation read_flags(int argc, const char* const* argv);
+
+} // namespace fieldcast::ops

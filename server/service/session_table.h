@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/guarded.h"
+#include "server/service/status.h"
+#include "server/service/stream.h"
+
+#include <chrono>
+#include <map>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+namespace fieldcast::service {
+
+/// Why a session was not admitted.
+struct NoPlace {
+    Problem problem = Problem::kExhausted;
+    std::string message;
+};
+
+/// All open streams, and the limits on their number. Thread-safe.
+class SessionTable {
+public:
+    explicit SessionTable(const session::Limits& limits) : limits_(limits) {}
+
+    /// A place for a session of `peer`: its id, or why there is none.
+    tl::expected<std::uint64_t, NoPlace> admit(const std::string& peer);
+
+    /// `stream` takes the place `id`.
+    void add(std::uint64_t id, const std::shared_ptr<Stream>& stream);
+    void remove(std::uint64_t id);
+
+    /// No further sessions; `admit` says why.
+    void close(const std::string& reason);
+
+    std::vector<std::shared_ptr<Stream>> streams();
+    std::size_t size();
+
+    /// False: there are still sessions at `deadline`.
+    bool wait_until_empty(session::TimePoint deadline);
+
+private:
+    struct Place {
+        std::string peer;
+        std::weak_ptr<Stream> stream;
+    };
+    struct State {
+        std::map<std::uint64_t, Place> places;
+        std::uint64_t next_id = 1;
+        std::string closed_because; ///< empty: open
+    };
+
+    const session::Limits limits_;
+    std::condition_variable removed_;
+    Guarded<State> state_;
+};
+
+} // namespace fieldcast::service

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/guarded.h"
+#include "server/session/session.h"
+
+#include <functional>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace fieldcast::service {
+
+using RawReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
+
+/// One LightField.Open call: moves messages between gRPC and a Session. One write and one read in flight at most.
+/// Reactions return at once. Lives until gRPC has called OnDone and nobody else holds it.
+class Stream final : public RawReactor, public std::enable_shared_from_this<Stream> {
+public:
+    struct Setup {
+        std::vector<std::shared_ptr<feed::Feed>> channels;
+        session::Limits limits;
+        std::uint64_t id = 0;                       ///< of the session, for the log
+        std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`
+    };
+
+    /// Begins to read and write.
+    static std::shared_ptr<Stream> open(grpc::CallbackServerContext& context, Setup setup);
+
+    /// Must be called several times per heartbeat interval.
+    void tick();
+    void go_away(const std::string& reason, session::TimePoint at);
+
+    void OnReadDone(bool ok) override;
+    void OnWriteDone(bool ok) override;
+    void OnCancel() override;
+    void OnDone() override;
+
+private:
+    struct State {
+        std::optional<session::Session> session;
+        std::optional<grpc::Status> verdict; ///< finish with this when nothing is being written
+        session::TimePoint write_begun{};
+        bool is_reading = false;
+        bool is_writing = false;
+        bool has_input_ended = false;
+        bool is_pinned = false; ///< somebody uses the context: do not finish
+        bool is_cut = false;    ///< TryCancel was, or is being, called
+        bool is_finished = false;
+    };
+    /// What to do once the lock is released.
+    struct Actions {
+        bool read = false;
+        std::optional<wire::WireChunk> write;
+        std::optional<grpc::Status> finish;
+    };
+
+    Stream(grpc::CallbackServerContext& context, Setup setup) : context_(context), setup_(std::move(setup)) {}
+
+    void begin();
+    void pump();
+    Actions decide(session::TimePoint now);
+    void receive();
+    void take_frame(const feed::FramePtr& frame);
+    void end(const grpc::Status& status);
+    bool pin_if_overdue(session::TimePoint now);
+    void cut();
+    void log_configuration(const session::Session& session) const;
+    void log_closed(const session::SessionCounts& counts) const;
+
+    grpc::CallbackServerContext& context_;
+    const Setup setup_;
+    std::shared_ptr<Stream> self_; ///< set from `open` to OnDone
+    grpc::ByteBuffer incoming_;    ///< belongs to the read in flight
+    grpc::ByteBuffer outgoing_;    ///< belongs to the write in flight
+    Guarded<State> state_;
+};
+
+} // namespace fieldcast::service

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server_client.h"
+
+#include <grpcpp/impl/codegen/client_unary_call.h>
+
+namespace fieldcast::test {
+
+namespace {
+
+grpc::ByteBuffer to_buffer(const std::string& bytes) {
+    const grpc::Slice slice(bytes);
+    return {&slice, 1};
+}
+
+std::string to_string(const grpc::ByteBuffer& buffer) {
+    grpc::Slice slice;
+    return buffer.DumpToSingleSlice(&slice).ok()
+               ? std::string(reinterpret_cast<const char*>(slice.begin()), slice.size())
+               : std::string();
+}
+
+void set_deadline(grpc::ClientContext& context) {
+    context.set_deadline(std::chrono::system_clock::now() + kCallDeadline);
+}
+
+} // namespace
+
+std::shared_ptr<grpc::Channel> connect(int port) {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of its own
+    return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials(),
+                                     arguments);
+}
+
+OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel) : stub_(v1::LightField::NewStub(channel)) {
+    set_deadline(context_);
+    stream_ = stub_->Open(&context_);
+}
+
+bool OpenCall::configure(const v1::Configure& wanted) {
+    v1::ClientMessage message;
+    *message.mutable_configure() = wanted;
+    return send(message);
+}
+
+bool OpenCall::acknowledge(const v1::FrameChunk& chunk) {
+    v1::ClientMessage message;
+    v1::FrameAck& ack = *message.mutable_frame_ack();
+    ack.set_frame_id(chunk.frame_id());
+    ack.set_epoch(chunk.epoch());
+    ack.set_outcome(v1::FRAME_OUTCOME_DECODED);
+    return send(message);
+}
+
+std::optional<v1::ServerMessage> OpenCall::read() {
+    v1::ServerMessage message;
+    return stream_->Read(&message) ? std::optional(std::move(message)) : std::nullopt;
+}
+
+std::optional<v1::ServerMessage> OpenCall::read_until(v1::ServerMessage::MessageCase kind) {
+    auto message = read();
+    while (message && message->message_case() != kind) {
+        message = read();
+    }
+    return message;
+}
+
+grpc::Status OpenCall::finish() {
+    while (read()) {
+    }
+    return stream_->Finish();
+}
+
+grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response) {
+    grpc::ClientContext context;
+    set_deadline(context);
+    grpc::ByteBuffer answer;
+    const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC);
+    const grpc::Status status = grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer>(
+        &channel, rpc, &context, to_buffer(request), &answer);
+    response = to_string(answer);
+    return status;
+}
+
+grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request,
+                          std::string& response) {
+    grpc::ClientContext context;
+    set_deadline(context);
+    const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::BIDI_STREAMING);
+    using Factory = grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>;
+    const std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream(
+        Factory::Create(&channel, rpc, &context));
+    stream->Write(to_buffer(request));
+    grpc::ByteBuffer answer;
+    if (stream->Read(&answer)) {
+        response = to_string(answer);
+    }
+    stream->WritesDone();
+    while (stream->Read(&answer)) {
+    }
+    return stream->Finish();
+}
+
+} // namespace fieldcast::test

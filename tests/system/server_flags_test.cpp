@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/ops/flags.h"
+
+#include <algorithm>
+#include <gmock/gmock.h>
+#include <limits>
+
+namespace fieldcast::ops {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A file that exists; tests run in the repository root.
+constexpr const char* kFile = "CMakeLists.txt";
+
+Invocation read(std::vector<const char*> flags) {
+    flags.insert(flags.begin(), "fieldcast-server");
+    return read_flags(static_cast<int>(flags.size()), flags.data());
+}
+
+TEST(Flags, DefaultsServeOnLoopback) {
+    const Invocation invocation = read({"--scene", kFile});
+    EXPECT_THAT(invocation.problems, IsEmpty());
+    EXPECT_EQ(invocation.kind, Invocation::Kind::kServe);
+    const Config& config = invocation.config;
+    EXPECT_EQ(config.channels.at(0).name, "CMakeLists");
+    EXPECT_EQ(config.listen.host, "127.0.0.1");
+    EXPECT_EQ(config.listen.port, 50151);
+    EXPECT_EQ(config.width_px, 1280U);
+    EXPECT_EQ(config.height_px, 720U);
+    EXPECT_TRUE(config.has_auto_exposure);
+    EXPECT_TRUE(config.settings.next_event_estimation);
+    EXPECT_EQ(config.lattice.convergence_m, std::numeric_limits<float>::infinity());
+}
+
+TEST(Flags, ReadsEverything) {
+    const Config config = read({"--channel",
+                                "a=CMakeLists.txt",
+                                "--channel",
+                                "b=CMakeLists.txt",
+                                "--sky",
+                                "1,0.5,0",
+                                "--size",
+                                "320x180",
+                                "--fps",
+                                "15",
+                                "--spacing",
+                                "0.05",
+                                "--convergence",
+                                "2.5",
+                                "--spp",
+                                "4",
+                                "--bounces",
+                                "3",
+                                "--no-nee",
+                                "--denoiser",
+                                "none",
+                                "--exposure",
+                                "1.5",
+                                "--tone-map",
+                                "aces",
+                                "--guard-band",
+                                "1,2,3,4",
+                                "--clock",
+                                "frames",
+                                "--frames",
+                                "30",
+                                "--seed",
+                                "9",
+                                "--listen",
+                                "[::1]:1234",
+                                "--largest-grid",
+                                "4x5",
+                                "--time",
+                                "1.5",
+                                "--fixed-camera",
+                                "--traversal",
+                                "bvh"})
+                              .config;
+    EXPECT_EQ(config.channels.size(), 2U);
+    EXPECT_EQ(config.sky, glm::vec3(1.0F, 0.5F, 0.0F));
+    EXPECT_EQ(config.width_px, 320U);
+    EXPECT_EQ(config.frames_per_second, 15.0F);
+    EXPECT_EQ(config.spacing_m, 0.05F);
+    EXPECT_EQ(config.lattice.convergence_m, 2.5F);
+    EXPECT_EQ(config.settings.samples_per_pixel, 4U);
+    EXPECT_FALSE(config.settings.next_event_estimation);
+    EXPECT_EQ(config.settings.denoiser, Denoiser::kNone);
+    EXPECT_EQ(config.settings.exposure, 1.5F);
+    EXPECT_EQ(config.settings.tone_map, ToneMap::kAces);
+    EXPECT_EQ(config.guard_band.bottom_px, 4U);
+    EXPECT_EQ(config.clock, ClockMode::kFrames);
+    EXPECT_EQ(config.loop_frames, 30U);
+    EXPECT_EQ(config.listen.host, "[::1]");
+    EXPECT_EQ(config.largest_grid.cols, 5U);
+    EXPECT_EQ(config.fixed_time_s, 1.5);
+}
+
+TEST(Flags, RefusesToListenForTheWorld) {
+    for (const char* const listen : {"0.0.0.0:50151", "192.168.1.4:50151", "[::]:50151", "example.org:80"}) {
+        EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("loopback"))) << listen;
+    }
+}
+
+TEST(Flags, ReportsAllProblemsAtOnce) {
+    const auto problems = read({"--scene", "/no/such.gltf", "--fps", "0", "--spp", "0", "--alpha", "2"}).problems;
+    EXPECT_EQ(problems.size(), 4U);
+}
+
+TEST(Flags, ReportsTextItCannotRead) {
+    const auto problems =
+        read({"--scene", kFile, "--size", "big", "--sky", "1,2", "--exposure", "bright", "--denoiser", "magic",
+              "--listen", "here", "--guard-band", "1,2", "--channel", "nofile", "--clock", "sun"})
+            .problems;
+    EXPECT_EQ(problems.size(), 8U);
+}
+
+TEST(Flags, NeedsAScene) {
+    EXPECT_THAT(read({}).problems, Contains(HasSubstr("--scene")));
+}
+
+TEST(Flags, NeedsDifferentChannelNames) {
+    EXPECT_THAT(read({"--scene", kFile, "--scene", kFile}).problems, Contains(HasSubstr("two channels")));
+}
+
+TEST(Flags, PortZeroNeedsAPortFile) {
+    EXPECT_THAT(read({"--scene", kFile, "--listen", "127.0.0.1:0"}).problems, Contains(HasSubstr("--port-file")));
+    EXPECT_THAT(read({"--scene", kFile, "--listen", "127.0.0.1:0", "--port-file", "p"}).problems, IsEmpty());
+}
+
+TEST(Flags, UnknownFlagsAreProblems) {
+    EXPECT_THAT(read({"--scene", kFile, "--colour"}).problems, Contains(HasSubstr("--colour")));
+}
+
+TEST(Flags, HelpHasExamplesAndEveryGroup) {
+    const Invocation help = read({"--help"});
+    EXPECT_THAT(help.problems, IsEmpty());
+    EXPECT_EQ(help.kind, Invocation::Kind::kPrint);
+    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:"}) {
+        EXPECT_THAT(help.text, HasSubstr(part));
+    }
+}
+
+TEST(Flags, PrintsAConfigFile) {
+    const Invocation printed = read({"--scene", kFile, "--fps", "12", "--print-config"});
+    EXPECT_THAT(printed.text, HasSubstr("fps=12"));
+}
+
+} // namespace
+} // namespace fieldcast::ops

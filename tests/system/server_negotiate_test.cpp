@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/negotiate.h"
+#include "server_synthetic.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace fieldcast::session {
+namespace {
+
+class Negotiate : public testing::Test {
+protected:
+    tl::expected<Configuration, Refusal> ask() { return negotiate(wanted_, channels_, limits_); }
+
+    /// The refusal of what is asked; an acceptance is a failure with an empty refusal.
+    Refusal refusal() {
+        const auto answer = ask();
+        EXPECT_FALSE(answer.has_value());
+        return answer ? Refusal{} : answer.error();
+    }
+
+    void set_grid(std::uint32_t rows, std::uint32_t cols) {
+        wanted_.mutable_grid()->set_rows(rows);
+        wanted_.mutable_grid()->set_cols(cols);
+    }
+
+    std::vector<std::shared_ptr<feed::Feed>> channels_{std::make_shared<feed::Feed>(test::synthetic_info("first")),
+                                                       std::make_shared<feed::Feed>(test::synthetic_info("second"))};
+    Limits limits_;
+    v1::Configure wanted_;
+};
+
+TEST_F(Negotiate, FillsEverythingLeftOpen) {
+    const auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->feed->info().name, "first");
+    EXPECT_EQ(answer->mode, v1::DELIVERY_MODE_VIEWS);
+    EXPECT_EQ(answer->view_set.grid, channels_[0]->info().largest_grid);
+    EXPECT_EQ(answer->view_set.width_px, 64U);
+    EXPECT_EQ(answer->view_set.height_px, 36U);
+    EXPECT_EQ(answer->frames_per_second, 100.0F);
+    EXPECT_EQ(answer->chunk_bytes, wire::kDefaultChunkBytes);
+    EXPECT_EQ(answer->max_bytes_in_flight, limits_.max_bytes_in_flight);
+}
+
+TEST_F(Negotiate, TakesTheFirstModeItHas) {
+    wanted_.add_modes(v1::DELIVERY_MODE_WARP);
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.add_modes(v1::DELIVERY_MODE_VIEWS);
+    const auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->mode, v1::DELIVERY_MODE_SCENE);
+}
+
+TEST_F(Negotiate, RefusesWarpAlone) {
+    wanted_.add_modes(v1::DELIVERY_MODE_WARP);
+    const Refusal answer = refusal();
+    EXPECT_EQ(answer.reason, v1::REFUSAL_REASON_UNSUPPORTED);
+    EXPECT_EQ(answer.field, "modes");
+    EXPECT_NE(answer.message.find("WARP"), std::string::npos);
+}
+
+TEST_F(Negotiate, RefusesUnknownChannelNamingTheOthers) {
+    wanted_.set_channel("third");
+    const Refusal answer = refusal();
+    EXPECT_EQ(answer.reason, v1::REFUSAL_REASON_NOT_FOUND);
+    EXPECT_EQ(answer.field, "channel");
+    EXPECT_NE(answer.message.find("first, second"), std::string::npos);
+}
+
+TEST_F(Negotiate, TakesAnyGridUpTo72Views) {
+    for (const auto& [rows, cols] : {std::pair(3U, 3U), std::pair(6U, 6U), std::pair(1U, 72U), std::pair(8U, 9U)}) {
+        set_grid(rows, cols);
+        const auto answer = ask();
+        ASSERT_TRUE(answer.has_value()) << rows << "x" << cols;
+        EXPECT_EQ(answer->view_set.grid.view_count(), rows * cols);
+        EXPECT_EQ(answer->view_set.grid.geometry, channels_[0]->info().largest_grid.geometry);
+    }
+}
+
+TEST_F(Negotiate, RefusesGridsByField) {
+    set_grid(0, 3);
+    EXPECT_EQ(refusal().field, "grid.rows");
+    set_grid(3, 73);
+    EXPECT_EQ(refusal().field, "grid.cols");
+    set_grid(9, 9);
+    EXPECT_EQ(refusal().field, "grid");
+    EXPECT_NE(refusal().message.find("72"), std::string::npos);
+    set_grid(3, 3);
+    wanted_.mutable_grid()->set_spacing_x_m(-1.0F);
+    EXPECT_EQ(refusal().field, "grid.spacing_x_m");
+    wanted_.mutable_grid()->set_spacing_x_m(0.1F);
+    wanted_.mutable_grid()->set_spacing_y_m(std::numeric_limits<float>::infinity());
+    EXPECT_EQ(refusal().field, "grid.spacing_y_m");
+    wanted_.mutable_grid()->set_spacing_y_m(0.1F);
+    wanted_.mutable_grid()->set_convergence_m(std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(refusal().field, "grid.convergence_m");
+}
+
+TEST_F(Negotiate, RefusesViewsLargerThanTheSource) {
+    wanted_.set_view_width_px(65);
+    wanted_.set_view_height_px(36);
+    EXPECT_EQ(refusal().field, "view_width_px");
+    wanted_.set_view_width_px(64);
+    wanted_.set_view_height_px(37);
+    EXPECT_EQ(refusal().field, "view_height_px");
+    EXPECT_NE(refusal().message.find("36"), std::string::npos);
+    wanted_.set_view_height_px(0);
+    EXPECT_EQ(refusal().field, "view_height_px");
+}
+
+TEST_F(Negotiate, RefusesFieldsOfViewBeyondTheSource) {
+    for (const float fovy_rad : {1.0F, -0.1F, std::numeric_limits<float>::quiet_NaN()}) {
+        wanted_.set_fovy_rad(fovy_rad);
+        EXPECT_EQ(refusal().field, "fovy_rad");
+    }
+    wanted_.set_fovy_rad(0.5F);
+    EXPECT_EQ(ask()->view_set.fovy_rad, 0.5F);
+}
+
+TEST_F(Negotiate, RefusesMorePixelsThanTheBudget) {
+    limits_.max_view_set_pixels = 9ULL * 64 * 36;
+    set_grid(3, 3);
+    EXPECT_TRUE(ask().has_value());
+    set_grid(3, 4);
+    EXPECT_EQ(refusal().field, "grid");
+    EXPECT_NE(refusal().message.find(std::to_string(limits_.max_view_set_pixels)), std::string::npos);
+}
+
+TEST_F(Negotiate, ChoosesPlanesAndCodecs) {
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
+    v1::CodecPreference& depth = *wanted_.add_codecs();
+    depth.set_semantic(v1::PLANE_SEMANTIC_DEPTH);
+    depth.add_codecs(static_cast<v1::Codec>(99));
+    depth.add_codecs(v1::CODEC_RAW);
+    const auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    const auto& planes = std::get<feed::PlanesWish>(answer->wish).choices;
+    ASSERT_EQ(planes.size(), 6U);
+    EXPECT_EQ(planes[0].codec, codec::CodecId::kZstdFiltered);
+    EXPECT_EQ(planes[2].semantic, PlaneSemantic::kDepth);
+    EXPECT_EQ(planes[2].codec, codec::CodecId::kRaw);
+}
+
+TEST_F(Negotiate, RefusesUnknownCodecsAlone) {
+    v1::CodecPreference& colour = *wanted_.add_codecs();
+    colour.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+    colour.add_codecs(static_cast<v1::Codec>(99));
+    EXPECT_EQ(refusal().field, "codecs");
+    EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_UNSUPPORTED);
+}
+
+TEST_F(Negotiate, RefusesRatesAndChunkSizesByField) {
+    wanted_.set_max_frames_per_second(-1.0F);
+    EXPECT_EQ(refusal().field, "max_frames_per_second");
+    wanted_.set_max_frames_per_second(1e9F);
+    EXPECT_EQ(ask()->frames_per_second, 100.0F);
+    wanted_.set_chunk_bytes(1);
+    EXPECT_EQ(refusal().field, "chunk_bytes");
+    wanted_.set_chunk_bytes(wire::kMaxChunkBytes + 1);
+    EXPECT_EQ(refusal().field, "chunk_bytes");
+}
+
+} // namespace
+} // namespace fieldcast::session

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+# The server without Vulkan: synthetic channels stand in for rendered ones.
+add_library(server_synthetic STATIC ${CMAKE_CURRENT_LIST_DIR}/server_synthetic.cpp)
+target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
+
+fieldcast_test(server_session_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
+    DEPENDS server_synthetic fieldcast_server_session)
+fieldcast_test(server_flags_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
+    DEPENDS fieldcast_server_ops)
+fieldcast_test(server_service_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
+    DEPENDS server_synthetic fieldcast_server_service)
