@@ -14,6 +14,8 @@
 #include "shaders/trace_holes_rayquery.spv.h"
 #include "shaders/trace_layers_bvh.spv.h"
 #include "shaders/trace_layers_rayquery.spv.h"
+#include "shaders/trace_reference_bvh.spv.h"
+#include "shaders/trace_reference_rayquery.spv.h"
 #include "shaders/trace_source_bvh.spv.h"
 #include "shaders/trace_source_rayquery.spv.h"
 #include "shaders/visibility_bvh.spv.h"
@@ -52,6 +54,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return traced("trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv);
     case KernelId::kTraceLayers:
         return traced("trace_layers", trace_layers_bvh_spv, trace_layers_rayquery_spv);
+    case KernelId::kTraceReference:
+        return traced("trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv);
     case KernelId::kTraceSource:
         return traced("trace_source", trace_source_bvh_spv, trace_source_rayquery_spv);
     case KernelId::kVisibility:

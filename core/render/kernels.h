@@ -19,6 +19,7 @@ enum class KernelId {
     kToneMap,
     kTraceHoles,
     kTraceLayers,
+    kTraceReference,
     kTraceSource,
     kVisibility,
 };

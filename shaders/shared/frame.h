@@ -58,6 +58,21 @@ struct TraceSourceParams {
     float max_indirect;
 };
 
+// trace_reference.comp: path traces a view without any reuse.
+struct TraceReferenceParams {
+    CameraBuffer camera;
+    Vec4Buffer film;             // in/out: sum of radiance, number of samples
+    UintBuffer invalid_samples;
+    uint width;
+    uint height;
+    uint seed;
+    uint first_sample;
+    uint samples_per_pixel;
+    uint max_bounces;
+    uint flags;
+    float max_indirect;          // 0: unbiased
+};
+
 // source_surfaces.comp: G-buffer planes of the source from its visibility.
 struct SourceSurfacesParams {
     CameraBuffer camera;
