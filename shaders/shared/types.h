@@ -61,7 +61,8 @@ static_assert(alignof(uint64_t) == 8, "device addresses are aligned as in scalar
 
 #define SHARED_BEGIN
 #define SHARED_END
-// A buffer starts at a multiple of 16 bytes; `Name(address + offset)` keeps to that too.
+// A buffer starts at a multiple of 16 bytes; `Name(address + offset)` keeps to that too. Drivers of GPUs may then use
+// 128-bit loads; software Vulkan is as fast with 4 (measured: 8 vec4 loads per thread, Mesa 22.3.6 and 25.0.7).
 #define SHARED_BUFFER(Name, Element)                                                                                   \
     layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Name { Element at[]; }
 
