@@ -128,7 +128,7 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
     params.height = frame.height;
     params.sigma_luminance = 4.0F; // the paper's values
     params.sigma_depth = 1.0F;
-    params.sigma_normal = 128.0F;
+    params.normal_squarings = 7; // 128
     const gpu::GroupCount groups{gpu::groups_for(pixel_count_, kGroup), 1, 1};
     recorder.stage("denoise");
     std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch

@@ -126,7 +126,7 @@ struct FilterParams {
     uint step;           // pixels between taps
     float sigma_luminance;
     float sigma_depth;
-    float sigma_normal;
+    uint normal_squarings; // σ of the normals is 2 to this power
 };
 const uint kFilterGeometry = 0;
 const uint kFilterDiffuse = 1;
