@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/device_tracer.h"
 
+#include "shaders/shared/bvh.h"
 #include "shaders/trace_rays_any_alpha_bvh.spv.h"
 #include "shaders/trace_rays_any_alpha_rayquery.spv.h"
 #include "shaders/trace_rays_any_bvh.spv.h"

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace fieldcast::bench {
+
+// One function per subcommand of fieldcast-bench, each in a file of its own: declares the options, and the callback
+// runs the benchmark when the command is chosen.
+
+/// Rays per second of the traversal kernels against Embree.
+void add_trace_command(CLI::App& app);
+
+} // namespace fieldcast::bench

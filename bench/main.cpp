@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// fieldcast-bench: one subcommand per benchmark.
+#include "bench/commands.h"
+#include "core/base/error.h"
+
+#include <iostream>
+
+namespace {
+
+constexpr int kUserError = 2;
+constexpr int kMachineFailed = 1;
+
+int start(int argc, char** argv) {
+    CLI::App app{"Benchmarks of Fieldcast", "fieldcast-bench"};
+    app.require_subcommand(1);
+    fieldcast::bench::add_trace_command(app);
+    CLI11_PARSE(app, argc, argv);
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return start(argc, argv);
+    } catch (const fieldcast::UserError& error) {
+        std::cerr << "fieldcast-bench: " << error.what() << '\n';
+        return kUserError;
+    } catch (const std::exception& error) {
+        std::cerr << "fieldcast-bench: " << error.what() << '\n';
+        return kMachineFailed;
+    }
+}
