@@ -146,7 +146,10 @@ private:
 
     /// Such channels are legal and have no meaning without an extension.
     static void drop_channels_without_node(json& root) {
-        for (json& animation : root.contains("animations") ? root["animations"] : json::array()) {
+        if (!root.contains("animations")) {
+            return;
+        }
+        for (json& animation : root["animations"]) {
             json& channels = animation["channels"];
             if (channels.is_null()) {
                 channels = json::array();
