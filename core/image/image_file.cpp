@@ -90,7 +90,7 @@ OIIO::ImageSpec png_spec(std::uint32_t width_px, std::uint32_t height_px, int ch
     OIIO::ImageSpec spec(static_cast<int>(width_px), static_cast<int>(height_px), channels, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("png:compressionLevel", 4); // half the time of the default 6 for 3 % more bytes
+    spec.attribute("png:compressionLevel", 4); // 84 ms, not 286 as with the default 6, for 5 % more bytes (720p photo)
     return spec;
 }
 
