@@ -11,4 +11,7 @@ namespace fieldcast::bench {
 /// Rays per second of the traversal kernels against Embree.
 void add_trace_command(CLI::App& app);
 
+/// Stage breakdown of whole frames (the paper's figure 3).
+void add_frame_command(CLI::App& app);
+
 } // namespace fieldcast::bench

@@ -14,6 +14,7 @@ int start(int argc, char** argv) {
     CLI::App app{"Benchmarks of Fieldcast", "fieldcast-bench"};
     app.require_subcommand(1);
     fieldcast::bench::add_trace_command(app);
+    fieldcast::bench::add_frame_command(app);
     CLI11_PARSE(app, argc, argv);
     return 0;
 }

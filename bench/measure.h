@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace fieldcast::bench {
+
+struct Size {
+    std::uint32_t width_px = 0;
+    std::uint32_t height_px = 0;
+};
+
+/// Reads "1280x720". Throws UserError naming `flag`.
+Size parse_size(const std::string& flag, const std::string& text);
+
+/// Middle value (the upper one of two); `values` must not be empty.
+double median(std::vector<double> values);
+
+/// Writes indented JSON. Throws UserError if the file cannot be written.
+void write_json(const std::string& file, const nlohmann::ordered_json& json);
+
+/// Largest resident set of this process so far, bytes.
+std::uint64_t peak_rss_bytes();
+
+} // namespace fieldcast::bench
