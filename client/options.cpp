@@ -81,7 +81,9 @@ void add_server_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option("--patience", text.patience_s, "Seconds without any success after which to give up")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    app.add_option("--frames", play.frames, "Frames to show; 0: until interrupted")->capture_default_str();
+    app.add_option("--frames", play.frames, "Frames to show; 0: until interrupted")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
 }
 
 void add_output_flags(CLI::App& app, FlagText& text, Options& options) {

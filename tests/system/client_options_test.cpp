@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/options.h"
+
+#include <gmock/gmock.h>
+
+namespace fieldcast::test {
+namespace {
+
+using client::Invocation;
+using testing::HasSubstr;
+
+Invocation read(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "fieldcast-client");
+    return client::read_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(Options, ReadTheCommandOfTheReadme) {
+    const Invocation invocation =
+        read({"--server", "127.0.0.1:9", "--grid", "4x5", "--mode", "scene", "--size", "640x360", "--frames", "3",
+              "--out", "o", "--write", "quilt,exr", "--cache", "c", "--planes", "illumination"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    const client::play::PlayOptions& play = invocation.options->play;
+    EXPECT_EQ(play.server.address, "127.0.0.1:9");
+    EXPECT_EQ(play.wish.rows, 4U);
+    EXPECT_EQ(play.wish.cols, 5U);
+    EXPECT_EQ(play.wish.width_px, 640U);
+    EXPECT_EQ(play.wish.height_px, 360U);
+    EXPECT_EQ(play.wish.mode, client::net::Mode::kScene);
+    EXPECT_EQ(play.wish.planes, client::net::PlaneWish::kIllumination);
+    EXPECT_EQ(play.frames, 3U);
+    EXPECT_TRUE(play.products.source_exr);
+    EXPECT_FALSE(play.products.views);
+    EXPECT_FALSE(invocation.options->falls_back_to_views);
+}
+
+TEST(Options, ASecondModeIsTheFallBack) {
+    const Invocation invocation = read({"--mode", "scene,views"});
+    ASSERT_TRUE(invocation.options);
+    EXPECT_TRUE(invocation.options->falls_back_to_views);
+}
+
+TEST(Options, UnsetValuesAreLeftToTheChannel) {
+    const Invocation invocation = read({});
+    ASSERT_TRUE(invocation.options);
+    const client::net::Wish& wish = invocation.options->play.wish;
+    EXPECT_EQ(wish.width_px, 0U);
+    EXPECT_FALSE(wish.spacing_m);
+    EXPECT_FALSE(wish.convergence_m);
+    EXPECT_EQ(wish.fovy_rad, 0.0F);
+}
+
+TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {
+    const std::vector<std::vector<const char*>> wrong{
+        {"--grid", "9x9"}, {"--grid", "x"},     {"--size", "640"},
+        {"--size", "0x5"}, {"--mode", "magic"}, {"--write", "exr"}, // needs mode scene
+        {"--fov", "180"},  {"--save", "some"},  {"--frames", "-1"}};
+    for (const auto& arguments : wrong) {
+        const Invocation invocation = read(arguments);
+        EXPECT_FALSE(invocation.options) << arguments[0] << ' ' << arguments[1];
+        EXPECT_EQ(invocation.exit_code, 2);
+        EXPECT_THAT(invocation.text, HasSubstr(arguments[0]));
+    }
+}
+
+TEST(Options, HelpHasExamplesAndExitsWithZero) {
+    const Invocation invocation = read({"--help"});
+    EXPECT_FALSE(invocation.options);
+    EXPECT_EQ(invocation.exit_code, 0);
+    EXPECT_THAT(invocation.text, HasSubstr("Examples:"));
+}
+
+} // namespace
+} // namespace fieldcast::test

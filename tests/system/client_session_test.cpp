@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// The client's side of a stream, against a server that follows a script.
+#include "client/net/session.h"
+#include "client_fake_server.h"
+
+#include <gmock/gmock.h>
+
+namespace fieldcast::test {
+namespace {
+
+using namespace client::net;
+using std::chrono_literals::operator""s;
+using testing::HasSubstr;
+
+Wish small_wish() {
+    Wish wish;
+    wish.rows = 1;
+    wish.cols = 2;
+    return wish;
+}
+
+/// A session with a fake server; every wait has a deadline.
+class SessionTest : public testing::Test {
+protected:
+    void open(FakeServer::Script script, const Wish& wish = small_wish()) {
+        server_.emplace(std::move(script));
+        connection_.emplace(server_->address());
+        session_.emplace(*connection_, wish, pool_);
+    }
+
+    /// The next event of that kind; others are skipped.
+    template <class Kind> std::optional<Kind> next() {
+        const auto deadline = std::chrono::steady_clock::now() + 10s;
+        while (auto event = session_->next(deadline)) {
+            if (auto* wanted = std::get_if<Kind>(&*event)) {
+                return std::move(*wanted);
+            }
+        }
+        return std::nullopt;
+    }
+
+    WorkerPool pool_{1};
+    std::optional<FakeServer> server_;
+    std::optional<Connection> connection_;
+    std::optional<Session> session_;
+};
+
+v1::FrameAck read_ack(FakeCall& call) {
+    const auto message = call.read_until(v1::ClientMessage::kFrameAck);
+    return message ? message->frame_ack() : v1::FrameAck();
+}
+
+TEST_F(SessionTest, DeliversFramesAndAcknowledgesEach) {
+    Guarded<std::vector<v1::FrameAck>> acks;
+    open([&](FakeCall& call, int) {
+        const wire::ViewSet set = call.grant();
+        for (const std::uint64_t id : {1U, 2U}) {
+            call.send(views_messages(set, id));
+            acks.lock()->push_back(read_ack(call));
+        }
+        call.read_rest();
+    });
+    for (const std::uint64_t id : {1U, 2U}) {
+        const auto arrived = next<FrameArrived>();
+        ASSERT_TRUE(arrived);
+        EXPECT_EQ(arrived->frame_id, id);
+        const auto& views = std::get<wire::ReceivedViews>(arrived->frame.content).views.views;
+        ASSERT_EQ(views.size(), 2U);
+        EXPECT_EQ(views[1].image.bytes.front(), std::byte{fake_grey(id)});
+        EXPECT_EQ(views[0].discards.id, 2U);
+        EXPECT_LE(arrived->first_byte_ns, arrived->last_byte_ns);
+        EXPECT_LE(arrived->last_byte_ns, arrived->decoded_ns);
+    }
+    session_->half_close();
+    ASSERT_TRUE(next<Ended>());
+    const auto seen = *acks.lock();
+    ASSERT_EQ(seen.size(), 2U);
+    EXPECT_EQ(seen[1].frame_id(), 2U);
+    EXPECT_EQ(seen[1].outcome(), v1::FRAME_OUTCOME_DECODED);
+    EXPECT_GT(seen[1].decoded_ns(), 0);
+}
+
+TEST_F(SessionTest, SendsASecondAcknowledgementWithTimes) {
+    Guarded<std::optional<v1::FrameAck>> repeated;
+    open([&](FakeCall& call, int) {
+        call.send(views_messages(call.grant(), 1));
+        read_ack(call);
+        *repeated.lock() = read_ack(call);
+        call.read_rest();
+    });
+    ASSERT_TRUE(next<FrameArrived>());
+    FrameReport report;
+    report.frame_id = 1;
+    report.epoch = 1;
+    report.shown_ns = 77;
+    session_->report(report);
+    session_->half_close();
+    ASSERT_TRUE(next<Ended>());
+    ASSERT_TRUE(repeated.lock()->has_value());
+    EXPECT_EQ((*repeated.lock())->shown_ns(), 77);
+}
+
+TEST_F(SessionTest, ReportsARefusalWithItsField) {
+    open([](FakeCall& call, int) {
+        call.read_until(v1::ClientMessage::kConfigure);
+        v1::ServerMessage message;
+        message.mutable_refused()->set_field("grid.rows");
+        message.mutable_refused()->set_message("9, at most\n6");
+        call.send(message);
+        call.read_rest();
+    });
+    const auto refused = next<Refused>();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->message, "grid.rows: 9, at most 6"); // control characters do not reach the terminal
+    EXPECT_FALSE(refused->is_transient);
+}
+
+TEST_F(SessionTest, EndsWhenAFrameComesBeforeConfigured) {
+    open([](FakeCall& call, int) {
+        const auto configure = call.read_until(v1::ClientMessage::kConfigure);
+        v1::ServerMessage chunk;
+        chunk.mutable_frame_chunk()->set_frame_id(1);
+        call.send(chunk);
+        call.read_rest();
+    });
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->error.what(), HasSubstr("before Configured"));
+    EXPECT_FALSE(ended->error.is_transient());
+}
+
+TEST_F(SessionTest, EndsWhenAnotherGridIsGranted) {
+    open([](FakeCall& call, int) {
+        auto configure = call.read_until(v1::ClientMessage::kConfigure);
+        configure->mutable_configure()->mutable_grid()->set_cols(3);
+        call.send(configured_message(configure->configure()));
+        call.read_rest();
+    });
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->error.what(), HasSubstr("another grid"));
+}
+
+TEST_F(SessionTest, EndsWhenGrantedFramesAreTooLarge) {
+    Wish wish = small_wish();
+    wish.rows = 8;
+    wish.cols = 9;
+    open(
+        [](FakeCall& call, int) {
+            auto configure = call.read_until(v1::ClientMessage::kConfigure);
+            configure->mutable_configure()->set_view_width_px(8000);
+            configure->mutable_configure()->set_view_height_px(8000);
+            call.send(configured_message(configure->configure()));
+            call.read_rest();
+        },
+        wish);
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->error.what(), HasSubstr("at most 1024 MiB"));
+}
+
+TEST_F(SessionTest, ReportsADamagedFrameAndShowsTheNext) {
+    Guarded<v1::FrameAck> first_ack;
+    open([&](FakeCall& call, int) {
+        const wire::ViewSet set = call.grant();
+        std::vector<v1::ServerMessage> damaged = views_messages(set, 1);
+        v1::FrameTrailer& trailer = *damaged.back().mutable_frame_chunk()->mutable_trailer();
+        trailer.set_crc32c(trailer.crc32c() ^ 1U);
+        call.send(damaged);
+        *first_ack.lock() = read_ack(call);
+        call.send(views_messages(set, 2));
+        call.read_rest();
+    });
+    ASSERT_TRUE(next<FrameFailed>());
+    const auto arrived = next<FrameArrived>();
+    ASSERT_TRUE(arrived);
+    EXPECT_EQ(arrived->frame_id, 2U);
+    EXPECT_EQ(first_ack.lock()->outcome(), v1::FRAME_OUTCOME_FAILED);
+    EXPECT_EQ(first_ack.lock()->frame_id(), 1U);
+}
+
+TEST_F(SessionTest, RejectsViewsOfAnotherSizeThanAgreed) {
+    open([](FakeCall& call, int) {
+        wire::ViewSet set = call.grant();
+        set.width_px = 32;
+        call.send(views_messages(set, 1));
+        call.read_rest();
+    });
+    const auto failed = next<FrameFailed>();
+    ASSERT_TRUE(failed);
+    EXPECT_THAT(failed->reason, HasSubstr("than agreed"));
+}
+
+TEST_F(SessionTest, GivesUpOnAServerThatSendsOnlyRubbish) {
+    open([](FakeCall& call, int) {
+        call.grant();
+        for (std::uint64_t id = 1; id < 100; ++id) {
+            v1::ServerMessage chunk;
+            chunk.mutable_frame_chunk()->set_frame_id(id);
+            chunk.mutable_frame_chunk()->set_epoch(1);
+            chunk.mutable_frame_chunk()->mutable_header();
+            call.send(chunk);
+        }
+        call.read_rest();
+    });
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->error.what(), HasSubstr("undecodable"));
+}
+
+TEST_F(SessionTest, CountsAbortedFramesWithoutAcknowledgingThem) {
+    Guarded<v1::FrameAck> first_ack;
+    open([&](FakeCall& call, int) {
+        const wire::ViewSet set = call.grant();
+        call.send(views_messages(set, 1).front());
+        v1::ServerMessage aborted;
+        aborted.mutable_frame_aborted()->set_frame_id(1);
+        aborted.mutable_frame_aborted()->set_epoch(1);
+        call.send(aborted);
+        call.send(views_messages(set, 2));
+        *first_ack.lock() = read_ack(call);
+        call.read_rest();
+    });
+    ASSERT_TRUE(next<FrameAborted>());
+    ASSERT_TRUE(next<FrameArrived>());
+    session_->half_close();
+    ASSERT_TRUE(next<Ended>());
+    EXPECT_EQ(first_ack.lock()->frame_id(), 2U);
+}
+
+TEST_F(SessionTest, MapsServerTimesOntoItsOwnClock) {
+    // The server's clock is one hour ahead; answering takes no time.
+    constexpr std::int64_t kAheadNs = 3'600'000'000'000;
+    open([](FakeCall& call, int) {
+        const wire::ViewSet set = call.grant();
+        const auto request = call.read_until(v1::ClientMessage::kTimeSync);
+        v1::ServerMessage answer;
+        answer.mutable_time_sync()->set_client_send_ns(request->time_sync().client_send_ns());
+        answer.mutable_time_sync()->set_server_receive_ns(steady_now_ns() + kAheadNs);
+        answer.mutable_time_sync()->set_server_send_ns(steady_now_ns() + kAheadNs);
+        call.send(answer);
+        std::vector<v1::ServerMessage> frame = views_messages(set, 1);
+        frame.back().mutable_frame_chunk()->mutable_trailer()->mutable_times()->set_pose_sampled_ns(steady_now_ns() +
+                                                                                                    kAheadNs);
+        call.send(frame);
+        call.read_rest();
+    });
+    const auto arrived = next<FrameArrived>();
+    ASSERT_TRUE(arrived && arrived->pose_sampled_ns);
+    const std::int64_t error_ns = *session_->clock().round_trip_ns() / 2; // what the exchange can be off at most
+    EXPECT_LE(*arrived->pose_sampled_ns, arrived->decoded_ns + error_ns);
+    EXPECT_GT(*arrived->pose_sampled_ns, arrived->decoded_ns - 10'000'000'000);
+}
+
+TEST_F(SessionTest, ReportsAServerThatIsNotThere) {
+    std::string address;
+    {
+        const FakeServer gone([](FakeCall&, int) {});
+        address = gone.address();
+    }
+    connection_.emplace(address);
+    session_.emplace(*connection_, small_wish(), pool_);
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_TRUE(ended->error.is_transient());
+}
+
+TEST(ClockSync, TrustsTheShortestRoundTrip) {
+    ClockSync clock;
+    EXPECT_FALSE(clock.client_from_server_ns(5));
+    clock.add({0, 1000, 1000, 900}); // slow: offset −550
+    clock.add({1000, 1510, 1510, 1020});
+    EXPECT_EQ(clock.round_trip_ns(), 20);
+    EXPECT_EQ(clock.client_from_server_ns(1510), 1010);
+    EXPECT_FALSE(clock.client_from_server_ns(0)); // 0 means unknown
+}
+
+TEST(ClockSync, IgnoresExchangesThatCannotBeTrue) {
+    ClockSync clock;
+    clock.add({100, 10, 5, 200});            // sent before received
+    clock.add({200, 10, 10, 100});           // received before sent
+    clock.add({0, INT64_MAX, INT64_MAX, 1}); // would overflow
+    EXPECT_FALSE(clock.round_trip_ns());
+}
+
+} // namespace
+} // namespace fieldcast::test

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# The client against a scripted server, its scene cache, its flags; and both programs together.
+find_package(CLI11 REQUIRED)
+add_library(client_fake_server STATIC ${CMAKE_CURRENT_LIST_DIR}/client_fake_server.cpp)
+target_include_directories(client_fake_server PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(client_fake_server PUBLIC fieldcast_wire fieldcast_proto_grpc PRIVATE fieldcast_warnings)
+
+fieldcast_test(client_session_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_session_test.cpp
+    DEPENDS client_fake_server fieldcast_client_net)
+fieldcast_test(client_play_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_play_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_scene_cache_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_statistics_test.cpp
+    DEPENDS client_fake_server fieldcast_client_play)
+fieldcast_test(client_options_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/options.cpp
+    DEPENDS fieldcast_client_play CLI11::CLI11)
+
+fieldcast_test(roundtrip_test LABELS system TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/roundtrip_test.cpp
+    DEPENDS fieldcast_gpu fieldcast_image)
+add_dependencies(roundtrip_test fieldcast-server fieldcast-client)
+target_compile_definitions(roundtrip_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")

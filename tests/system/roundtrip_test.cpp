@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two programs together, on loopback with the shipped scene: views made by the server and views made by clients
+// that hold the scene are the same images, to the last bit, for the same frame (conventions, "What is the same on both
+// sides": same binary, driver and device, lossless planes, no view history).
+#include "core/gpu/device.h"
+#include "core/image/image_file.h"
+
+#include <chrono>
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <gmock/gmock.h>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <spawn.h>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+extern char** environ;
+
+namespace fieldcast::test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+constexpr auto kLongestRun = 240s; // two cores, busy, software Vulkan, cold pipeline cache
+constexpr int kGridSide = 3;
+
+/// A program with its output in a file. Killed if it outlives this object.
+class Program {
+public:
+    Program(const std::string& file, std::vector<std::string> arguments, const fs::path& log) {
+        arguments.insert(arguments.begin(), file);
+        std::vector<char*> argv;
+        for (std::string& argument : arguments) {
+            argv.push_back(argument.data());
+        }
+        argv.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+        if (posix_spawn(&pid_, file.c_str(), &actions, nullptr, argv.data(), environ) != 0) {
+            pid_ = 0;
+        }
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    ~Program() {
+        if (is_running()) {
+            ::kill(pid_, SIGKILL);
+            ::waitpid(pid_, nullptr, 0);
+        }
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    void interrupt() { ::kill(pid_, SIGINT); }
+    bool is_running() { return pid_ != 0 && !exit_code(0ms); }
+
+    /// Nothing if it still runs after `patience`; −1 if a signal ended it.
+    std::optional<int> exit_code(std::chrono::milliseconds patience) {
+        const auto deadline = std::chrono::steady_clock::now() + patience;
+        int status = 0;
+        while (pid_ != 0 && ::waitpid(pid_, &status, WNOHANG) == 0) {
+            if (std::chrono::steady_clock::now() >= deadline) {
+                return std::nullopt;
+            }
+            std::this_thread::sleep_for(20ms); // a child's end has no event that one can wait for with a deadline
+        }
+        if (pid_ != 0) {
+            pid_ = 0;
+            exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        }
+        return exit_code_;
+    }
+
+private:
+    pid_t pid_ = 0;
+    int exit_code_ = -1;
+};
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::set<std::string> frame_folders(const fs::path& folder) {
+    std::set<std::string> names;
+    if (fs::exists(folder)) {
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            names.insert(entry.path().filename());
+        }
+    }
+    return names;
+}
+
+image::Rgba8 read_view(const fs::path& file) {
+    const std::string bytes = text_of(file);
+    return image::decode_rgba8(std::as_bytes(std::span(bytes)), file, {});
+}
+
+class RoundTrip : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::path(testing::TempDir()) / ("roundtrip_" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        try {
+            const gpu::Device device;
+        } catch (const gpu::NoDeviceError& error) {
+            GTEST_SKIP() << "no Vulkan device: " << error.what();
+        }
+        ASSERT_TRUE(start_server());
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    bool start_server() {
+        const fs::path port_file = folder_ / "port";
+        server_ = std::make_unique<Program>(FIELDCAST_SERVER,
+                                            std::vector<std::string>{"--scene", "scenes/atelier/atelier.gltf", "--size",
+                                                                     "160x90", "--fps", "2", "--clock", "frames",
+                                                                     "--largest-grid", "3x3", "--listen", "127.0.0.1:0",
+                                                                     "--port-file", port_file},
+                                            folder_ / "server.log");
+        const auto deadline = std::chrono::steady_clock::now() + kLongestRun;
+        while (text_of(port_file).empty() && server_->is_running() && std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(50ms);
+        }
+        port_ = text_of(port_file);
+        while (!port_.empty() && port_.back() == '\n') {
+            port_.pop_back();
+        }
+        EXPECT_FALSE(port_.empty()) << text_of(folder_ / "server.log");
+        return !port_.empty();
+    }
+
+    std::unique_ptr<Program> client(const std::string& name, std::vector<std::string> arguments) {
+        const std::vector<std::string> all{"--server", "127.0.0.1:" + port_,
+                                           "--grid",   "3x3",
+                                           "--size",   "160x90",
+                                           "--out",    folder_ / name,
+                                           "--json",   folder_ / (name + ".json"),
+                                           "--cache",  folder_ / "cache"};
+        arguments.insert(arguments.begin(), all.begin(), all.end());
+        return std::make_unique<Program>(FIELDCAST_CLIENT, arguments, folder_ / (name + ".log"));
+    }
+
+    /// Compares every frame that both clients wrote. Returns how many those were.
+    int compare(const std::string& one, const std::string& other) {
+        int common = 0;
+        const std::set<std::string> others = frame_folders(folder_ / other);
+        for (const std::string& frame : frame_folders(folder_ / one)) {
+            if (others.count(frame) != 0) {
+                ++common;
+                compare_frame(folder_ / one / frame, folder_ / other / frame);
+            }
+        }
+        return common;
+    }
+
+    static void compare_frame(const fs::path& one, const fs::path& other) {
+        for (int row = 0; row < kGridSide; ++row) {
+            for (int col = 0; col < kGridSide; ++col) {
+                const std::string name = "view_r" + std::to_string(row) + "_c" + std::to_string(col) + ".png";
+                const image::Rgba8 a = read_view(one / name);
+                const image::Rgba8 b = read_view(other / name);
+                ASSERT_EQ(a.pixels.size(), b.pixels.size());
+                std::size_t different = 0;
+                for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+                    different += a.pixels[i] != b.pixels[i] ? 1 : 0;
+                }
+                EXPECT_EQ(different, 0U) << one / name << " of " << a.pixels.size() << " values";
+                EXPECT_GT(std::set(a.pixels.begin(), a.pixels.end()).size(), 16U) << one / name << " shows nothing";
+            }
+        }
+    }
+
+    fs::path folder_;
+    std::string port_;
+    std::unique_ptr<Program> server_;
+};
+
+TEST_F(RoundTrip, ViewsAndSceneGiveTheSameImages) {
+    const std::vector<std::string> every_frame{"--save", "all", "--write", "views"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), every_frame.begin(), every_frame.end());
+        return arguments;
+    };
+    const auto thin = client("thin", with({"--mode", "views", "--frames", "0"})); // for as long as the others need
+    const auto surfaces = client("surfaces", with({"--mode", "scene", "--planes", "g-buffer", "--frames", "4"}));
+    const auto lean = client("lean", with({"--mode", "scene", "--planes", "illumination", "--frames", "4"}));
+
+    EXPECT_EQ(surfaces->exit_code(kLongestRun), 0) << text_of(folder_ / "surfaces.log");
+    EXPECT_EQ(lean->exit_code(kLongestRun), 0) << text_of(folder_ / "lean.log");
+    thin->interrupt();
+    EXPECT_EQ(thin->exit_code(10s), 130) << text_of(folder_ / "thin.log");
+
+    EXPECT_GE(compare("thin", "surfaces"), 1) << "no frame reached both clients";
+    EXPECT_GE(compare("thin", "lean"), 1) << "no frame reached both clients";
+    EXPECT_THAT(text_of(folder_ / "thin.json"), testing::HasSubstr("\"failed\": 0"));
+    EXPECT_THAT(text_of(folder_ / "lean.json"), testing::HasSubstr("\"sessions\": 1"));
+}
+
+TEST_F(RoundTrip, RefusalExitsWithTwoAndNamesTheLimit) {
+    const auto program = client("huge", {"--fov", "170", "--frames", "1"});
+    EXPECT_EQ(program->exit_code(kLongestRun), 2);
+    EXPECT_THAT(text_of(folder_ / "huge.log"), testing::HasSubstr("refused"));
+}
+
+} // namespace
+} // namespace fieldcast::test
