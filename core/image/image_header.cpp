@@ -33,6 +33,15 @@ private:
     std::span<const std::byte> bytes_;
 };
 
+/// Whether the chunks of a PNG follow each other up to IEND. OpenImageIO 2.4 leaks memory when the bytes end early.
+bool is_complete_png(const ByteView& bytes) {
+    std::size_t position = 8;
+    while (position + 12 <= bytes.size() && !bytes.has(position + 4, "IEND")) {
+        position += std::size_t{12} + bytes.big32(position);
+    }
+    return position + 12 <= bytes.size();
+}
+
 /// SOF0 … SOF15 carry the size; C4, C8 and CC in that range are tables and reserved.
 bool is_start_of_frame(std::uint32_t marker) {
     return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
@@ -80,6 +89,9 @@ Decoded<ImageHeader> read_image_header(std::span<const std::byte> encoded) {
         header = webp_header(bytes);
     } else {
         return decode_error("not a PNG, JPEG or WebP image");
+    }
+    if (header.format == FileFormat::kPng && !is_complete_png(bytes)) {
+        return decode_error("truncated PNG");
     }
     if (header.width_px == 0 || header.height_px == 0) {
         return decode_error("damaged image header: no size");

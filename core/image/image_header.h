@@ -19,7 +19,7 @@ struct ImageHeader {
 };
 
 /// Finds format and size without decoding and without allocating. Libraries allocate whole images when they open a
-/// progressive JPEG or a WebP, so limits must be checked before they see the bytes.
+/// progressive JPEG or a WebP, so limits must be checked before they see the bytes. A PNG must be complete.
 Decoded<ImageHeader> read_image_header(std::span<const std::byte> bytes);
 
 } // namespace fieldcast::image
