@@ -14,6 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::chrono::milliseconds kLongestPause{500}; ///< without a jump of the scene
+
 /// Sleeps until `time`, or until stopped.
 void wait_until(Clock::time_point time, const std::stop_token& stop) {
     std::mutex mutex;
@@ -50,7 +52,7 @@ void Channel::render_loop(const std::stop_token& stop) {
         std::chrono::duration<double>(1.0 / static_cast<double>(feed_->info().frames_per_second)));
     std::uint64_t frame_id = 0;
     std::uint64_t reported_samples = 0;
-    while (feed_->wait_for_demand(stop)) {
+    while (wait_for_demand(stop)) {
         const feed::Demand demand = feed_->demand();
         if (demand.empty()) {
             continue; // the last one has just gone
@@ -68,6 +70,15 @@ void Channel::render_loop(const std::stop_token& stop) {
         }
         wait_until(begin + interval, stop);
     }
+}
+
+bool Channel::wait_for_demand(const std::stop_token& stop) {
+    const auto begin = Clock::now();
+    const bool has_demand = feed_->wait_for_demand(stop);
+    if (Clock::now() - begin > kLongestPause) {
+        clock_.resume();
+    }
+    return has_demand;
 }
 
 void Channel::encode_loop(const std::stop_token& stop) {

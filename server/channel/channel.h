@@ -24,6 +24,7 @@ public:
 
 private:
     void render_loop(const std::stop_token& stop);
+    bool wait_for_demand(const std::stop_token& stop); ///< false: stopped
     void encode_loop(const std::stop_token& stop);
     void log_frame(const RenderedFrame& frame) const;
 

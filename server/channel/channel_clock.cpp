@@ -7,8 +7,6 @@ namespace fieldcast::channel {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLongestGap{500};
-
 std::int64_t nanoseconds_of(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }
@@ -37,13 +35,15 @@ FrameMoment ChannelClock::next(TimePoint now) {
     moment.scene_time_ns = scene_time_ns(now);
     moment.seed = frame_seed(seed_, frame_);
     const std::int64_t loop = scene::loop_index(scene_, moment.scene_time_ns);
-    const bool has_jumped = mode_ == ops::ClockMode::kReal && !fixed_time_s_ && now - previous_ > kLongestGap;
-    moment.cut = is_first_ || has_loop_ended || loop != previous_loop_ || (has_jumped && scene_.duration_s > 0.0);
+    moment.cut = is_first_ || has_loop_ended || loop != previous_loop_ || has_jumped_;
     previous_loop_ = loop;
-    previous_ = now;
-    is_first_ = false;
+    is_first_ = has_jumped_ = false;
     ++frame_;
     return moment;
+}
+
+void ChannelClock::resume() {
+    has_jumped_ = mode_ == ops::ClockMode::kReal && !fixed_time_s_ && scene_.duration_s > 0.0;
 }
 
 std::int64_t ChannelClock::scene_time_ns(TimePoint now) {

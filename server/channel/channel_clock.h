@@ -25,9 +25,11 @@ public:
     /// `scene` must outlive it.
     ChannelClock(const ops::Config& config, const scene::Scene& scene);
 
-    /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over, and
-    /// in real time also a pause of more than half a second (nobody was watching).
+    /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over.
     FrameMoment next(TimePoint now);
+
+    /// Nobody was watching for a while: in real time the scene has jumped, so the next frame is a cut.
+    void resume();
 
 private:
     std::int64_t scene_time_ns(TimePoint now);
@@ -40,8 +42,8 @@ private:
     const std::uint32_t seed_;
     std::uint32_t frame_ = 0; ///< since the start, or since the loop of `loop_frames_` began
     bool is_first_ = true;
+    bool has_jumped_ = false;
     TimePoint begin_{};
-    TimePoint previous_{};
     std::int64_t previous_loop_ = 0;
 };
 

@@ -11,8 +11,20 @@ fieldcast_test(server_session_test LABELS quick
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
     DEPENDS fieldcast_server_ops)
+fieldcast_test(server_clock_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
+    DEPENDS fieldcast_server_channel)
 fieldcast_test(server_service_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
     DEPENDS server_synthetic fieldcast_server_service)
+
+# Renders; the tests that need a device skip without one.
+fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
+    DEPENDS fieldcast_proto_grpc)
+target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
+target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
+add_dependencies(server_process_test fieldcast-server)
