@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/log.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -14,15 +14,19 @@ namespace {
 spdlog::logger& logger() {
     static const auto instance = [] {
         auto created = std::make_shared<spdlog::logger>("fieldcast", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-        created->set_pattern("%Y-%m-%dT%H:%M:%S.%e %-5!l %v");
+        created->set_pattern("%Y-%m-%dT%H:%M:%S.%e %-7l %v");
         return created;
     }();
     return *instance;
 }
 
+bool is_control(char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+}
+
 void append_value(std::string& line, const std::string& value) {
-    const bool quote = value.empty() || value.find_first_of(" =\"\n\r\t") != std::string::npos;
-    if (!quote) {
+    const auto needs_quotes = [](char c) { return c == ' ' || c == '=' || c == '"' || is_control(c); };
+    if (!value.empty() && std::ranges::none_of(value, needs_quotes)) {
         line += value;
         return;
     }
@@ -31,7 +35,7 @@ void append_value(std::string& line, const std::string& value) {
         if (c == '"' || c == '\\') {
             line += '\\';
         }
-        line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        line += is_control(c) ? ' ' : c;
     }
     line += '"';
 }
@@ -52,10 +56,10 @@ void write(spdlog::level::level_enum level, std::string_view event, Fields field
 
 } // namespace
 
-std::string Field::number(double value, bool integral) {
+Field::Field(std::string_view k, double v) : key(k) {
     char buffer[32];
-    std::snprintf(buffer, sizeof buffer, integral ? "%.0f" : "%.6g", value);
-    return buffer;
+    std::snprintf(buffer, sizeof buffer, "%.6g", v);
+    value = buffer;
 }
 
 void set_level(Level level) {

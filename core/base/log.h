@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <initializer_list>
 #include <string>
 #include <string_view>
-#include <type_traits>
 
 namespace fieldcast::log {
 
@@ -19,16 +19,12 @@ struct Field {
     Field(std::string_view k, const char* v) : key(k), value(v) {}
     Field(std::string_view k, const std::string& v) : key(k), value(v) {}
     Field(std::string_view k, bool v) : key(k), value(v ? "true" : "false") {}
-    template <class T>
-        requires std::is_arithmetic_v<T>
-    Field(std::string_view k, T v) : key(k), value(number(static_cast<double>(v), std::is_integral_v<T>)) {}
-
-private:
-    static std::string number(double value, bool integral);
+    template <std::integral T> Field(std::string_view k, T v) : key(k), value(std::to_string(v)) {}
+    Field(std::string_view k, double v);
 };
 using Fields = std::initializer_list<Field>;
 
-/// Lines go to standard error: time, level, event, key=value pairs (values with spaces are quoted).
+/// Lines go to standard error: time, level, event, key=value pairs (values with spaces or control characters are quoted).
 /// error: someone must act; warn: degraded; info: lifecycle; debug: per frame. Thread-safe.
 void set_level(Level level);
 void debug(std::string_view event, Fields fields = {});
