@@ -10,7 +10,8 @@ namespace fieldcast::ops {
 
 PortFile::PortFile(std::filesystem::path file, int port) : file_(std::move(file)) {
     std::filesystem::path unfinished = file_;
-    unfinished += "." + std::to_string(getpid());
+    unfinished += ".";
+    unfinished += std::to_string(getpid());
     std::ofstream stream(unfinished);
     stream << port << '\n';
     stream.close();
