@@ -144,6 +144,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     if (!text.port_file.empty()) {
         config.port_file = text.port_file;
     }
+    config.settings.next_event_estimation = !text.lacks_next_event_estimation;
     constexpr std::array kDenoisers{Word{.word = "svgf", .value = Denoiser::kSvgf},
                                     Word{.word = "none", .value = Denoiser::kNone}};
     constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},

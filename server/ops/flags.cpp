@@ -4,6 +4,7 @@
 #include "server/ops/flag_text.h"
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 namespace fieldcast::ops {
 
@@ -58,7 +59,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     RenderSettings& settings = config.settings;
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
-    app.add_flag("!--no-nee", settings.next_event_estimation, "Without next event estimation")->group("Rendering");
+    app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
     app.add_option("--denoiser", text.denoiser, "svgf or none")->group("Rendering")->capture_default_str();
     app.add_option("--alpha", settings.temporal_alpha, "Weight of a new frame in the history")
         ->group("Rendering")
@@ -90,6 +91,16 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--log-level", text.log_level, "debug, info, warn or error")
         ->group("Serving")
         ->capture_default_str();
+}
+
+/// What is set, or has a default, as a --config file. CLI11 writes what is unset as an empty text, which is no value.
+std::string config_file(const CLI::App& app) {
+    std::istringstream lines(app.config_to_str(true, false));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        text += line.ends_with("=\"\"") || line.empty() ? "" : line + '\n';
+    }
+    return text;
 }
 
 /// Parses; what CLI11 has to say, if that ends the program.
@@ -136,7 +147,7 @@ Invocation read_flags(int argc, const char* const* argv) {
     }
     if (only_print) {
         invocation.kind = Invocation::Kind::kPrint;
-        invocation.text = app.config_to_str(true, false);
+        invocation.text = config_file(app);
     } else if (only_check) {
         invocation.kind = Invocation::Kind::kCheck;
     }

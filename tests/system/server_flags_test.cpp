@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
 
-#include <algorithm>
+#include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
 
@@ -143,9 +143,16 @@ TEST(Flags, HelpHasExamplesAndEveryGroup) {
     }
 }
 
-TEST(Flags, PrintsAConfigFile) {
-    const Invocation printed = read({"--scene", kFile, "--fps", "12", "--print-config"});
+TEST(Flags, PrintsAConfigFileThatItReads) {
+    const Invocation printed = read({"--scene", kFile, "--fps", "12", "--no-nee", "--print-config"});
     EXPECT_THAT(printed.text, HasSubstr("fps=12"));
+    const std::string file = testing::TempDir() + "server_flags_test.toml";
+    std::ofstream(file) << printed.text;
+    const Invocation again = read({"--config", file.c_str()});
+    EXPECT_THAT(again.problems, IsEmpty()) << printed.text;
+    EXPECT_EQ(again.config.frames_per_second, 12.0F);
+    EXPECT_FALSE(again.config.settings.next_event_estimation);
+    EXPECT_EQ(again.config.channels.size(), 1U);
 }
 
 } // namespace
