@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the documents to what they promise. Run in the root: python3 tests/unit/docs/docs_test.py"""
+import pathlib
+import unittest
+
+import promises
+
+NOT_OURS = {"build", "out", "third_party", "node_modules"}
+FLAG_SOURCES = {
+    "server": ["server/ops/flags.cpp"],
+    "client": ["client/options.cpp"],
+    "bench": sorted(p.as_posix() for p in pathlib.Path("bench").glob("*.cpp")),
+}
+FIRST_DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md", "docs/lightfield.md",
+                   "docs/protocol.md", "docs/operations.md", "docs/benchmarks.md", "docs/known_artefacts.md"]
+
+
+def read(path):
+    return pathlib.Path(path).read_text(encoding="utf-8")
+
+
+def documents():
+    for path in sorted(pathlib.Path(".").rglob("*.md")):
+        if not any(part in NOT_OURS or part.startswith(".") for part in path.parts):
+            yield path
+
+
+class Documents(unittest.TestCase):
+    def test_are_there(self):
+        found = {path.as_posix() for path in documents()}
+        self.assertEqual(set(), set(FIRST_DOCUMENTS) - found, "run in the root of the repository")
+
+    def test_links_lead_somewhere(self):
+        broken = [f"{path}: {target}" for path in documents() for target in promises.links(read(path))
+                  if not (path.parent / target).exists()]
+        self.assertEqual([], broken)
+
+    def test_links_stay_inside(self):
+        root = pathlib.Path(".").resolve()
+        outside = [f"{path}: {target}" for path in documents() for target in promises.links(read(path))
+                   if not (path.parent / target).resolve().is_relative_to(root)]
+        self.assertEqual([], outside)
+
+    def test_commands_are_in_the_help(self):
+        known = promises.help_commands(read("fieldcast"))
+        self.assertIn("demo", known)
+        unknown = [f"{path}: ./fieldcast {command}" for path in documents()
+                   for command in sorted(promises.script_commands(read(path)) - known)]
+        self.assertEqual([], unknown)
+
+    def test_flags_exist(self):
+        known = {program: promises.defined_flags("".join(map(read, files))) for program, files in FLAG_SOURCES.items()}
+        unknown = [f"{path}: fieldcast-{program} {flag}" for path in documents()
+                   for program, flag in sorted(promises.program_flags(read(path))) if flag not in known[program]]
+        self.assertEqual([], unknown)
+        self.assertNotEqual(set(), promises.program_flags(read("README.md")), "README shows how to call the programs")
+
+
+class Promises(unittest.TestCase):
+    def test_links(self):
+        text = '[a](docs/a.md#part) ![b](b.png "title") [c](https://example.org) [d](#here) <img src="d.png">'
+        self.assertEqual(["docs/a.md", "b.png", "d.png"], promises.links(text))
+        self.assertEqual([], promises.links("`view[i](x)`\n```\n[a](b)\n```\n"))
+
+    def test_commands(self):
+        self.assertEqual({"demo", "test"}, promises.script_commands("`./fieldcast demo`, ./fieldcast test --quick"))
+        script = "print_help() {\n    cat <<'END'\n  setup [--check]  text\n           more text\n  demo   x\n\nExamples:\n" \
+                 "  ./fieldcast gone\nEND\n}\n"
+        self.assertEqual({"setup", "demo"}, promises.help_commands(script))
+
+    def test_flags(self):
+        text = "build/fieldcast-server --scene a.gltf \\\n    --size 1x1   # --not-a-flag\n`fieldcast-client --grid 3x3` --other"
+        self.assertEqual({("server", "--scene"), ("server", "--size"), ("client", "--grid")},
+                         promises.program_flags(text))
+        self.assertEqual({"--grid", "--no-nee", "--help"}, promises.defined_flags('f("--grid", x); f("!--no-nee", y);'))
+
+
+if __name__ == "__main__":
+    unittest.main()

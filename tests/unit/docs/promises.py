@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the documents promise and where it is kept: links, commands of ./fieldcast, flags of the programs.
+
+Each function takes text and returns values, so that it can be tested without a tree.
+"""
+import re
+
+LINK = re.compile(r"!?\[[^\]]*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
+IMAGE_TAG = re.compile(r"<(?:img|a)\b[^>]*\b(?:src|href)=\"([^\"]+)\"", re.IGNORECASE)
+SCHEME = re.compile(r"^(?:[a-z][a-z0-9+.-]*:|//)", re.IGNORECASE)
+FENCE = re.compile(r"^(```|~~~).*?^\1[ \t]*$", re.MULTILINE | re.DOTALL)
+CODE_SPAN = re.compile(r"`[^`\n]*`")
+SCRIPT_COMMAND = re.compile(r"\./fieldcast[ \t]+([a-z][a-z-]*)")
+HELP_COMMAND = re.compile(r"^  ([a-z][a-z-]*)\b", re.MULTILINE)
+PROGRAM_CALL = re.compile(r"fieldcast-(server|client|bench)\b([^`\n|]*)")
+FLAG = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*)")
+DEFINED_FLAG = re.compile(r"\"!?(--[a-z][a-z0-9-]*)\"")
+GIVEN_FLAGS = {"--help"}  # the argument parser's own
+
+
+def links(text):
+    """Targets of links and images outside of code, without their #anchors; addresses with a scheme are left out."""
+    prose = CODE_SPAN.sub("", FENCE.sub("", text))
+    targets = [target.split("#")[0] for target in LINK.findall(prose) + IMAGE_TAG.findall(prose)
+               if not SCHEME.match(target)]
+    return [target for target in targets if target]
+
+
+def script_commands(text):
+    return set(SCRIPT_COMMAND.findall(text))
+
+
+def help_commands(script):
+    """Commands that `./fieldcast help` names, read from the script's own text."""
+    found = re.search(r"^print_help\(\) \{\n(.*?)^END$", script, re.MULTILINE | re.DOTALL)
+    body = found.group(1).partition("\nExamples:")[0] if found else ""
+    return set(HELP_COMMAND.findall(body))
+
+
+def program_flags(text):
+    """(program, flag) for every flag in a call of one of our programs. A backslash continues a call."""
+    joined = re.sub(r"\\\n\s*", " ", text)
+    return {(program, flag) for program, rest in PROGRAM_CALL.findall(joined)
+            for flag in FLAG.findall(rest.split(" #")[0])}
+
+
+def defined_flags(source):
+    """Flags that C++ source gives to the argument parser."""
+    return set(DEFINED_FLAG.findall(source)) | GIVEN_FLAGS
