@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of our own BVH (shared/bvh.h); included by lib/traversal.glsl only.
-// Shaped by software Vulkan: lanes step together, every texel fetch and every access to a private array costs about
-// as much as 50 vector operations. So: few fetches, at most one stack entry per node. An entry is a *group*: what is
-// left to visit of one node's children, nearest first:
+// Shaped by software Vulkan, where lanes step together and every texel fetch and private array access is scalar code:
+// three fetches per node, at most one stack entry per node, leaves tested when their node is. An entry is a *group*:
+// what is left to visit of one node's children, nearest first.
 //
 //   bits 0..23  index of the node's first inner child
 //   bits 24..29 slots of the remaining children, 2 bits each, next one lowest
@@ -34,6 +34,16 @@ struct BvhRay {
     vec3 inverse;        // 1 / direction, finite
     uint first_instance; // of the level
 };
+
+// Where a traversal stands.
+struct BvhCursor {
+    uint node;     // to be visited
+    uint group;
+    float group_t; // entry distance of the group's next child
+    int height;    // of the stack
+};
+uint bvh_stack_[kBvhStackSize];
+float bvh_stack_t_[kBvhStackSize];
 
 BvhRay make_bvh_ray(vec3 origin, vec3 direction, uint first_instance) {
     // Tiny components stand in for zeros, so that no plane distance is 0 · inf.
@@ -83,16 +93,12 @@ vec3 meet_triangle(vec3 origin, vec3 direction, vec3 vertex, vec3 edge1, vec3 ed
     return vec3(inside ? dot(edge2, q) * inverse : -1.0, u, v);
 }
 
-void accept_hit(inout BvhQuery query, float t, uint instance, uint primitive, vec2 barycentrics) {
-    query.hit = Hit(t, instance, primitive, barycentrics);
-}
-
 // A triangle whose material is MASK or BLEND was met.
 void meet_alpha(inout BvhQuery query, uint alpha_mode, float t, uint instance, uint primitive, vec2 barycentrics) {
     if (query.any && alpha_mode == kAlphaBlend) {
         query.transmittance *= 1.0 - surface_alpha(instance, primitive, barycentrics);
     } else if (alpha_accepts(alpha_mode, query.mode, query.seed, instance, primitive, barycentrics)) {
-        accept_hit(query, t, instance, primitive, barycentrics);
+        query.hit = Hit(t, instance, primitive, barycentrics);
     }
 }
 
@@ -108,20 +114,21 @@ void test_triangle(inout BvhQuery query, BvhRay ray, uint index) {
         if (kSceneHasAlpha && (c.w & kMaterialAlphaMask) != kAlphaOpaque) {
             meet_alpha(query, c.w & kMaterialAlphaMask, met.x, instance, b.w, met.yz);
         } else if (!kSceneHasAlpha || query.mode != kTraceBlend) {
-            accept_hit(query, met.x, instance, b.w, met.yz);
+            query.hit = Hit(met.x, instance, b.w, met.yz);
         }
     }
 }
 
-void test_leaf(inout BvhQuery query, BvhRay ray, uint first, uint count) {
-    for (uint i = 0u; i < count; ++i) {
-        test_triangle(query, ray, first + i);
-    }
+bool is_finished(BvhQuery query) {
+    return query.any && query.hit.instance != kNoInstance;
+}
+
+uvec4 child_kinds(uint shape) {
+    return (uvec4(shape) >> (kBvhKindShift + kBvhKindBits * uvec4(0u, 1u, 2u, 3u))) & ((1u << kBvhKindBits) - 1u);
 }
 
 // Tests the triangles of all leaf children that were met.
-void test_leaves(inout BvhQuery query, BvhRay ray, uint shape, uint first_triangle, bvec4 met) {
-    uvec4 kind = uvec4(shape >> 18, shape >> 21, shape >> 24, shape >> 27) & 7u;
+void test_leaves(inout BvhQuery query, BvhRay ray, uvec4 kind, uint first_triangle, bvec4 met) {
     uvec4 count = mix(kind, uvec4(0u), equal(kind, uvec4(kBvhChildInner)));
     uvec4 end = uvec4(count.x, count.x + count.y, count.x + count.y + count.z, 0u);
     uvec4 bits = (uvec4(1u) << count) - 1u;
@@ -131,96 +138,105 @@ void test_leaves(inout BvhQuery query, BvhRay ray, uint shape, uint first_triang
         uint lowest = pending & (~pending + 1u);
         pending ^= lowest;
         test_triangle(query, ray, first_triangle + (floatBitsToUint(float(int(lowest))) >> 23) - 127u);
-        if (query.any && query.hit.instance != kNoInstance) {
+        if (is_finished(query)) {
             break;
         }
     }
 }
 
-uvec4 sort_keys(uvec4 key) {
+// Distances with slots in their lowest bits, ascending. Distances are not negative, so they sort as integers.
+uvec4 sorted_children(vec4 entry, bvec4 met) {
+    uvec4 key = mix(uvec4(kMissKey), (floatBitsToUint(entry) & ~3u) | uvec4(0u, 1u, 2u, 3u), met);
     uvec4 a = uvec4(min(key.x, key.y), max(key.x, key.y), min(key.z, key.w), max(key.z, key.w));
     uvec4 b = uvec4(min(a.x, a.z), min(a.y, a.w), max(a.x, a.z), max(a.y, a.w));
     return uvec4(b.x, min(b.y, b.z), max(b.y, b.z), b.w);
 }
 
-BvhRay enter_level(vec3 origin, vec3 direction, uint placed, out uint root) {
+bool is_group(uint group) {
+    return (group >> 30) != 0u;
+}
+
+void push_group(inout BvhCursor at, uint group, float t) {
+    bvh_stack_[at.height] = group;
+    bvh_stack_t_[at.height] = t;
+    ++at.height;
+}
+
+// Goes to the nearest of the children in `key`; the others become the group.
+void descend(inout BvhCursor at, uint first_child, uvec4 key) {
+    at.node = first_child + (key.x & 3u);
+    if (key.y != kMissKey) {
+        if (is_group(at.group)) {
+            push_group(at, at.group, at.group_t);
+        }
+        uint count = 1u + uint(key.z != kMissKey) + uint(key.w != kMissKey);
+        at.group = first_child | (key.y & 3u) << 24 | (key.z & 3u) << 26 | (key.w & 3u) << 28 | count << 30;
+        at.group_t = uintBitsToFloat(key.y & ~3u);
+    }
+}
+
+// Goes to the next child of the group, or of the first group on the stack that is near enough. False: all was seen.
+bool take_next(inout BvhCursor at, inout BvhRay ray, vec3 origin, vec3 direction, float t_max) {
+    bool is_found = is_group(at.group) && at.group_t < t_max;
+    while (!is_found && at.height > 0) {
+        --at.height;
+        at.group = bvh_stack_[at.height];
+        at.group_t = bvh_stack_t_[at.height];
+        is_found = is_group(at.group) && at.group_t < t_max;
+        if (kTwoLevel && !is_group(at.group)) {
+            ray = make_bvh_ray(origin, direction, 0u);
+        }
+    }
+    uint first_child = at.group & (kBvhMaxNodes - 1u);
+    at.node = first_child + ((at.group >> 24) & 3u);
+    at.group = first_child | ((at.group >> 26) & 15u) << 24 | ((at.group >> 30) - 1u) << 30;
+    return is_found;
+}
+
+// Goes to the root of a placed level; what is left of the top level waits below a marker.
+void enter_level(inout BvhCursor at, out BvhRay ray, vec3 origin, vec3 direction, uint placed) {
+    if (is_group(at.group)) {
+        push_group(at, at.group, at.group_t);
+    }
+    push_group(at, kNoGroup, 0.0);
+    at.group = kNoGroup;
     int texel = int(placed * 4u);
     vec4 row0 = uintBitsToFloat(texelFetch(bvh_placed_levels_, texel));
     vec4 row1 = uintBitsToFloat(texelFetch(bvh_placed_levels_, texel + 1));
     vec4 row2 = uintBitsToFloat(texelFetch(bvh_placed_levels_, texel + 2));
     uvec4 tail = texelFetch(bvh_placed_levels_, texel + 3);
-    root = tail.x;
+    at.node = tail.x;
     vec4 from = vec4(origin, 1.0);
-    return make_bvh_ray(vec3(dot(row0, from), dot(row1, from), dot(row2, from)),
-                        vec3(dot(row0.xyz, direction), dot(row1.xyz, direction), dot(row2.xyz, direction)), tail.y);
+    ray = make_bvh_ray(vec3(dot(row0, from), dot(row1, from), dot(row2, from)),
+                       vec3(dot(row0.xyz, direction), dot(row1.xyz, direction), dot(row2.xyz, direction)), tail.y);
 }
 
 void traverse(inout BvhQuery query, vec3 origin, vec3 direction) {
-    uint stack[kBvhStackSize];
-    float stack_t[kBvhStackSize];
-    int height = 0;
-    uint group = kNoGroup;
-    float group_t = 0.0;
-    uint node = 0u;
+    BvhCursor at = BvhCursor(0u, kNoGroup, 0.0, 0);
     BvhRay ray = make_bvh_ray(origin, direction, 0u);
     while (true) {
-        int texel = int(node * 3u);
+        int texel = int(at.node * 3u);
         uvec4 head = texelFetch(bvh_nodes_, texel);
-        uint remaining = 0u;
         if (kTwoLevel && (head.w & kBvhPlaced) != 0u) {
-            // A placed level: what is left of the top level waits below a marker.
-            if ((group >> 30) != 0u) {
-                stack[height] = group;
-                stack_t[height++] = group_t;
-            }
-            stack[height] = kNoGroup;
-            stack_t[height++] = 0.0;
-            group = kNoGroup;
-            ray = enter_level(origin, direction, head.w & (kBvhPlaced - 1u), node);
+            enter_level(at, ray, origin, direction, head.w & (kBvhPlaced - 1u));
             continue;
         }
         uvec4 planes = texelFetch(bvh_nodes_, texel + 1);
         uvec4 tail = texelFetch(bvh_nodes_, texel + 2);
         vec4 entry;
         bvec4 met = meet_children(head, planes, tail.xy, ray, query.t_min, query.hit.t, entry);
-        uvec4 kind = uvec4(head.w >> 18, head.w >> 21, head.w >> 24, head.w >> 27) & 7u;
-        bvec4 inner = equal(kind, uvec4(kBvhChildInner));
-        test_leaves(query, ray, head.w, tail.w, met);
-        if (query.any && query.hit.instance != kNoInstance) {
+        uvec4 kind = child_kinds(head.w);
+        test_leaves(query, ray, kind, tail.w, met);
+        if (is_finished(query)) {
             break;
         }
-        uvec4 key = (floatBitsToUint(entry) & ~3u) | uvec4(0u, 1u, 2u, 3u);
-        key = mix(uvec4(kMissKey), key, bvec4(uvec4(met) & uvec4(inner)));
-        key = sort_keys(key);
+        bvec4 is_inner = equal(kind, uvec4(kBvhChildInner));
+        uvec4 key = sorted_children(entry, bvec4(uvec4(met) & uvec4(is_inner)));
         if (key.x != kMissKey) {
-            node = tail.z + (key.x & 3u);
-            if (key.y != kMissKey) {
-                if ((group >> 30) != 0u) {
-                    stack[height] = group;
-                    stack_t[height++] = group_t;
-                }
-                uint more = 1u + uint(key.z != kMissKey) + uint(key.w != kMissKey);
-                group = tail.z | (key.y & 3u) << 24 | (key.z & 3u) << 26 | (key.w & 3u) << 28 | more << 30;
-                group_t = uintBitsToFloat(key.y & ~3u);
-            }
-            continue;
-        }
-        // Nothing below: the next child of the group, or of the first group on the stack that is near enough.
-        bool found = (group >> 30) != 0u && group_t < query.hit.t;
-        while (!found && height > 0) {
-            --height;
-            group = stack[height];
-            group_t = stack_t[height];
-            found = (group >> 30) != 0u && group_t < query.hit.t;
-            if (kTwoLevel && (group >> 30) == 0u) {
-                ray = make_bvh_ray(origin, direction, 0u);
-            }
-        }
-        if (!found) {
+            descend(at, tail.z, key);
+        } else if (!take_next(at, ray, origin, direction, query.hit.t)) {
             break;
         }
-        node = (group & (kBvhMaxNodes - 1u)) + ((group >> 24) & 3u);
-        group = (group & (kBvhMaxNodes - 1u)) | ((group >> 26) & 15u) << 24 | ((group >> 30) - 1u) << 30;
     }
 }
 
