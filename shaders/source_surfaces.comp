@@ -1,8 +1,9 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// G-buffer planes of the source, in wire precision, from its visibility.
+// G-buffer planes of the source, every page, in wire precision, from its visibility.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/pages.glsl"
 #include "lib/surface.glsl"
 
 layout(local_size_x = 64) in;
@@ -17,22 +18,22 @@ void store(uint pixel, float depth, uint normal, uint id, uint material) {
 }
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.width * params.height) {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= params.width * params.height * params.page_count) {
         return;
     }
-    Visibility seen = params.visibility.at[pixel];
+    PagePixel at = locate_page_pixel(index, params.width, params.height);
+    Visibility seen = page_visibility(params.visibility, params.layers, at.page, at.pixel);
     if (seen.instance == kNoInstance) {
-        store(pixel, uintBitsToFloat(0x7F800000u), 0u, kNoIndex, 0u);
+        store(index, uintBitsToFloat(0x7F800000u), 0u, kNoIndex, 0u);
         return;
     }
     CameraRecord camera = params.camera.at[0];
-    uint y = pixel / params.width;
-    vec3 direction = camera_direction(camera, vec2(pixel - y * params.width, y) + 0.5);
+    vec3 direction = camera_direction(camera, vec2(at.x, at.y) + 0.5);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
-    vec3 at = intersect_plane(triangle, camera.origin, direction);
-    Surface s = make_surface(triangle, at.xy, normalize(direction), at.z / camera.focal_px);
+    vec3 meets = intersect_plane(triangle, camera.origin, direction);
+    Surface s = make_surface(triangle, meets.xy, normalize(direction), meets.z / camera.focal_px);
     uint material = uint(s.roughness * 255.0 + 0.5) | (uint(s.metallic * 255.0 + 0.5) << 8);
-    store(pixel, dot(s.position - camera.origin, camera.forward), pack_normal(s.normal),
+    store(index, dot(s.position - camera.origin, camera.forward), pack_normal(s.normal),
           (seen.instance << 12) | s.material, material);
 }

@@ -25,15 +25,15 @@ vec4 resolve(Signal s) {
 }
 
 // 3×3 Gaussian of the variances (diffuse, specular), which are themselves noisy.
-vec2 blurred_variance(ivec2 at, vec2 centre) {
+vec2 blurred_variance(Centre c, vec2 centre) {
     vec2 sum = 0.25 * centre;
     float total = 0.25;
     for (int i = 0; i < 9; ++i) {
         ivec2 offset = ivec2(i % 3 - 1, i / 3 - 1);
-        ivec2 p = at + offset;
+        ivec2 p = c.at + offset;
         if (i != 4 && is_inside(p)) {
             float w = offset.x == 0 || offset.y == 0 ? 0.125 : 0.0625;
-            int texel = p.y * int(params.width) + p.x;
+            int texel = tap_texel(c, p);
             sum += w * vec2(texelFetch(diffuse_, texel).a, texelFetch(specular_, texel).a);
             total += w;
         }
@@ -52,7 +52,7 @@ void store(uint pixel, vec4 diffuse, vec4 specular) {
 
 void main() {
     uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.width * params.height) {
+    if (pixel >= params.width * params.height * params.page_count) {
         return;
     }
     uvec4 geometry = texelFetch(geometry_, int(pixel));
@@ -62,9 +62,8 @@ void main() {
         store(pixel, diffuse, specular);
         return;
     }
-    uint y = pixel / params.width;
-    Centre c = load_centre(ivec2(pixel - y * params.width, y), geometry);
-    vec2 variance = blurred_variance(c.at, vec2(diffuse.a, specular.a));
+    Centre c = load_centre(pixel, geometry);
+    vec2 variance = blurred_variance(c, vec2(diffuse.a, specular.a));
     Signal d = make_signal(diffuse, variance.x);
     Signal s = make_signal(specular, variance.y);
     const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
@@ -73,7 +72,7 @@ void main() {
         ivec2 offset = tap * int(params.step);
         ivec2 at = c.at + offset;
         if (i != 12 && is_inside(at)) {
-            int texel = at.y * int(params.width) + at.x;
+            int texel = tap_texel(c, at);
             float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, texelFetch(geometry_, texel));
             if (weight > 1e-4) {
                 add_tap(d, texelFetch(diffuse_, texel), weight);

@@ -13,14 +13,13 @@ void pass_through(uint pixel) {
 
 void main() {
     uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.width * params.height) {
+    if (pixel >= params.width * params.height * params.page_count) {
         return;
     }
     uvec4 geometry = texelFetch(geometry_, int(pixel));
     float frames = texelFetch(length_, int(pixel)).x;
     bool is_short = frames < 4.0 && geometry.z != 0xFFFFFFFFu;
-    uint y = pixel / params.width;
-    Centre c = load_centre(ivec2(pixel - y * params.width, y), geometry);
+    Centre c = load_centre(pixel, geometry);
     vec3 diffuse = vec3(0.0);
     vec3 specular = vec3(0.0);
     vec4 moments = vec4(0.0);
@@ -29,7 +28,7 @@ void main() {
         ivec2 offset = ivec2(i % 7 - 3, i / 7 - 3);
         ivec2 at = c.at + offset;
         if (is_inside(at)) {
-            int texel = at.y * int(params.width) + at.x;
+            int texel = tap_texel(c, at);
             float weight = offset == ivec2(0) ? 1.0 : geometry_weight(c, offset, texelFetch(geometry_, texel));
             diffuse += weight * texelFetch(diffuse_, texel).rgb;
             specular += weight * texelFetch(specular_, texel).rgb;

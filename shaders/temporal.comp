@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/bsdf.glsl"
 #include "lib/camera.glsl"
+#include "lib/pages.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 1, binding = kTemporalGeometry) uniform usamplerBuffer geometry_;
@@ -38,12 +39,12 @@ struct Past {
     float tangential_limit_m;
 };
 
-void gather(CameraRecord camera, ivec2 at, float weight, Past past, inout History sum) {
+void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, inout History sum) {
     ivec2 size = ivec2(params.width, params.height);
     if (weight <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) {
         return;
     }
-    int texel = at.y * size.x + at.x;
+    int texel = (int(page) * size.y + at.y) * size.x + at.x;
     uvec4 geometry = texelFetch(previous_geometry_, texel);
     if (geometry.z != past.id) {
         return;
@@ -60,20 +61,20 @@ void gather(CameraRecord camera, ivec2 at, float weight, Past past, inout Histor
     }
 }
 
-History gather_history(CameraRecord camera, vec2 p, Past past) {
+History gather_history(CameraRecord camera, uint page, vec2 p, Past past) {
     History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), 0.0, 0.0);
     vec2 corner = floor(p - 0.5);
     vec2 f = p - 0.5 - corner;
     ivec2 base = ivec2(corner);
-    gather(camera, base, (1.0 - f.x) * (1.0 - f.y), past, sum);
-    gather(camera, base + ivec2(1, 0), f.x * (1.0 - f.y), past, sum);
-    gather(camera, base + ivec2(0, 1), (1.0 - f.x) * f.y, past, sum);
-    gather(camera, base + ivec2(1, 1), f.x * f.y, past, sum);
+    gather(camera, page, base, (1.0 - f.x) * (1.0 - f.y), past, sum);
+    gather(camera, page, base + ivec2(1, 0), f.x * (1.0 - f.y), past, sum);
+    gather(camera, page, base + ivec2(0, 1), (1.0 - f.x) * f.y, past, sum);
+    gather(camera, page, base + ivec2(1, 1), f.x * f.y, past, sum);
     bool retry = sum.weight < 0.05;
     ivec2 nearest = ivec2(floor(p));
     for (int i = 0; retry && i < 9; ++i) {
         ivec2 at = nearest + ivec2(i % 3 - 1, i / 3 - 1);
-        gather(camera, at, 1.0, past, sum);
+        gather(camera, page, at, 1.0, past, sum);
     }
     return sum;
 }
@@ -111,34 +112,34 @@ void store(uint pixel, vec3 diffuse, vec3 specular, vec4 moments, float frames) 
 }
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= params.width * params.height) {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= params.width * params.height * params.page_count) {
         return;
     }
-    vec3 diffuse = texelFetch(diffuse_, int(pixel)).rgb;
-    vec3 specular = texelFetch(specular_, int(pixel)).rgb;
+    PagePixel at = locate_page_pixel(index, params.width, params.height);
+    vec3 diffuse = texelFetch(diffuse_, int(index)).rgb;
+    vec3 specular = texelFetch(specular_, int(index)).rgb;
     float l_diffuse = luminance(diffuse);
     float l_specular = luminance(specular);
     vec4 moments = vec4(l_diffuse, l_diffuse * l_diffuse, l_specular, l_specular * l_specular);
-    Visibility seen = params.visibility.at[pixel];
+    Visibility seen = page_visibility(params.visibility, params.layers, at.page, at.pixel);
     if ((params.flags & kFlagTemporal) == 0u || seen.instance == kNoInstance) {
-        store(pixel, diffuse, specular, moments, 1.0);
+        store(index, diffuse, specular, moments, 1.0);
         return;
     }
     CameraRecord now = params.cameras.at[0];
     CameraRecord before = params.cameras.at[1];
-    uint y = pixel / params.width;
-    Past past = past_surface(seen, now, before, vec2(pixel - y * params.width, y) + 0.5);
-    past.normal = unpack_normal(texelFetch(geometry_, int(pixel)).y);
+    Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5);
+    past.normal = unpack_normal(texelFetch(geometry_, int(index)).y);
     vec3 p = camera_project(before, past.position);
-    History history = gather_history(before, p.xy, past);
+    History history = gather_history(before, at.page, p.xy, past);
     if (!(p.z > 0.0) || history.weight < 0.01) {
-        store(pixel, diffuse, specular, moments, 1.0);
+        store(index, diffuse, specular, moments, 1.0);
         return;
     }
     float scale = 1.0 / history.weight;
     float frames = min(history.frames * scale + 1.0, kMaxHistory);
     float alpha = max(params.alpha, 1.0 / frames);
-    store(pixel, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
+    store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
           mix(history.moments * scale, moments, alpha), frames);
 }

@@ -19,8 +19,8 @@ vec3 trace_primary(SceneInfo info, CameraRecord camera, vec3 direction, float st
     PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
                                          params.max_indirect);
     Illumination light = trace_path(info, settings, s, direction, cone_width, 1.0 / camera.focal_px, rng);
-    return s.emission + light.diffuse * s.diffuse_colour +
-           light.specular * specular_modulation(make_bsdf(s, direction));
+    Bsdf b = make_bsdf(s, direction);
+    return s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
 }
 
 void main() {

@@ -1,18 +1,19 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Path traces every pixel of the source view; writes noisy demodulated illumination.
+// Path traces every pixel of the source view, every page; writes noisy demodulated illumination.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/pages.glsl"
 #include "lib/path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { TraceSourceParams params; };
 
-void add_samples(uint pixel, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
+void add_samples(uint index, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
     SceneInfo info = load_scene_info();
     PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
                                          params.max_indirect);
-    uint seed = hash_combine(params.seed, pixel);
+    uint seed = hash_combine(params.seed, index);
     for (uint i = 0u; i < params.samples_per_pixel; ++i) {
         Sampler rng = make_sampler(seed, params.first_sample + i);
         Illumination one = trace_path(info, settings, s, direction, cone_width, cone_spread, rng);
@@ -26,24 +27,25 @@ void add_samples(uint pixel, Surface s, vec3 direction, float cone_width, float 
 }
 
 void main() {
-    uvec2 id = gl_GlobalInvocationID.xy;
+    uvec3 id = gl_GlobalInvocationID;
     if (id.x >= params.width || id.y >= params.height) {
         return;
     }
     uint pixel = id.y * params.width + id.x;
-    Visibility seen = params.visibility.at[pixel];
+    uint index = id.z * params.width * params.height + pixel;
+    Visibility seen = page_visibility(params.visibility, params.layers, id.z, pixel);
     Illumination sum = Illumination(vec3(0.0), vec3(0.0));
     if (seen.instance != kNoInstance) {
         CameraRecord camera = params.camera.at[0];
-        vec3 direction = camera_direction(camera, vec2(id) + 0.5);
+        vec3 direction = camera_direction(camera, vec2(id.xy) + 0.5);
         WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
         vec3 at = intersect_plane(triangle, camera.origin, direction);
         float cone_width = at.z / camera.focal_px;
         direction = normalize(direction);
         Surface s = make_surface(triangle, at.xy, direction, cone_width);
-        add_samples(pixel, s, direction, cone_width, 1.0 / camera.focal_px, sum);
+        add_samples(index, s, direction, cone_width, 1.0 / camera.focal_px, sum);
     }
     float scale = 1.0 / float(params.samples_per_pixel);
-    params.diffuse.at[pixel] = vec4(sum.diffuse * scale, 0.0);
-    params.specular.at[pixel] = vec4(sum.specular * scale, 0.0);
+    params.diffuse.at[index] = vec4(sum.diffuse * scale, 0.0);
+    params.specular.at[index] = vec4(sum.specular * scale, 0.0);
 }

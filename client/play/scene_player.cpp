@@ -32,7 +32,12 @@ Decoded<Views> ScenePlayer::play(const SourceFrame& frame, const wire::ViewSet& 
     if (const Decoded<bool> uploaded = planes_.upload(frame); !uploaded) {
         return tl::unexpected(uploaded.error());
     }
-    if (!has_surfaces(frame)) {
+    const std::uint32_t expected_layers = gpu_scene_.has_blend() ? kMaxLayers : 0;
+    if (frame.header.layer_count != expected_layers) {
+        return decode_error("header.layer_count: " + std::to_string(frame.header.layer_count) + ", the scene needs " +
+                            std::to_string(expected_layers));
+    }
+    if (expected_layers > 0 || !has_surfaces(frame)) { // the surfaces of layers never travel
         surfaces_.render(planes_);
     }
     return views_.render(planes_, view_request(set));

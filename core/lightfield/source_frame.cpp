@@ -10,4 +10,9 @@ const Plane* SourceFrame::find(PlaneSemantic semantic) const {
     return found == planes.end() ? nullptr : &*found;
 }
 
+std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic) {
+    const bool has_pages = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
+    return with_guard_band(header.source, header.guard_band).height_px * (has_pages ? 1 + header.layer_count : 1);
+}
+
 } // namespace fieldcast

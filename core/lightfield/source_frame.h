@@ -19,6 +19,8 @@ struct StageTime {
     bool operator==(const StageTime&) const = default;
 };
 
+inline constexpr std::uint32_t kMaxLayers = 2;
+
 /// All that a receiver needs to know about a frame besides its pixels.
 struct FrameHeader {
     std::uint64_t frame_id = 0;     ///< grows by at least 1 per frame of a channel
@@ -28,6 +30,9 @@ struct FrameHeader {
     Camera source;                  ///< without guard band
     GuardBand guard_band;           ///< planes are the source image plus this band
     RenderSettings settings;
+    /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below the
+    /// image's in the illumination planes, which are (1 + layer_count) times as high.
+    std::uint32_t layer_count = 0;
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;
@@ -36,9 +41,12 @@ struct FrameHeader {
 /// What one frame of path tracing yields, in wire precision: the border between server and clients.
 struct SourceFrame {
     FrameHeader header;
-    std::vector<Plane> planes; ///< each of with_guard_band(source, guard_band) size, at most one per semantic
+    std::vector<Plane> planes; ///< of plane_height() and the widened source's width, at most one per semantic
 
     const Plane* find(PlaneSemantic semantic) const; ///< null if absent
 };
+
+/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has.
+std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic);
 
 } // namespace fieldcast

@@ -21,6 +21,11 @@ std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of li
     return (request.width_px * request.height_px + 3U) & ~3U;
 }
 
+shared::ReprojectSettings reproject_settings(const ReprojectionThresholds& thresholds) {
+    return {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
+            thresholds.min_weight};
+}
+
 } // namespace
 
 struct GridRenderer::State {
@@ -51,7 +56,8 @@ struct GridRenderer::State {
 
     ViewRequest request;
     std::vector<Camera> view_cameras;
-    std::uint32_t source_pixels = 0;
+    std::uint32_t source_texels = 0; ///< of all pages
+    std::uint32_t page_count = 1;
     std::uint64_t view_pixels = 0; ///< over all views, padded
     std::uint64_t invalid_samples = 0;
 
@@ -82,15 +88,17 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
           make_scene_kernel(d, s, KernelId::kReproject, sizeof(shared::ReprojectParams), {&source_layout})),
       finish_kernel(make_plain_kernel(d, KernelId::kFinishList, sizeof(shared::FinishListParams))),
       holes_kernel(make_scene_kernel(d, s, KernelId::kTraceHoles, sizeof(shared::TraceListParams))),
-      layers_kernel(make_scene_kernel(d, s, KernelId::kTraceLayers, sizeof(shared::TraceListParams))),
+      layers_kernel(
+          make_scene_kernel(d, s, KernelId::kCompositeLayers, sizeof(shared::TraceListParams), {&source_layout})),
       tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))) {}
 
 void GridRenderer::State::resize(const SourcePlanes& source, const ViewRequest& next) {
     request = next;
-    if (source.pixel_count() != source_pixels) {
-        source_pixels = source.pixel_count();
-        geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_pixels) * 16);
-        illumination = gpu::Buffer(device, static_cast<std::uint64_t>(source_pixels) * 8);
+    page_count = source.page_count();
+    if (source.texel_count() != source_texels) {
+        source_texels = source.texel_count();
+        geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_texels) * 16);
+        illumination = gpu::Buffer(device, static_cast<std::uint64_t>(source_texels) * 8);
         geometry_view = gpu::TexelView(device, geometry, VK_FORMAT_R32G32B32A32_UINT);
         illumination_view = gpu::TexelView(device, illumination, VK_FORMAT_R32G32_UINT);
         source_set = gpu::BindingSet(device, source_layout);
@@ -151,14 +159,13 @@ void GridRenderer::State::record_interleave(const SourcePlanes& source) {
     params.material = source.plane(PlaneSemantic::kMaterial).address();
     params.geometry = geometry.address();
     params.illumination = illumination.address();
-    params.pixel_count = source.pixel_count();
+    params.pixel_count = source.texel_count();
     recorder.stage("interleave");
     recorder.dispatch(interleave_kernel, {}, params, {gpu::groups_for(params.pixel_count, kGroup), 1, 1});
     recorder.barrier();
 }
 
 void GridRenderer::State::record_reproject(const FrameHeader& header) {
-    const ReprojectionThresholds& thresholds = header.settings.reprojection;
     shared::ReprojectParams params{};
     params.cameras = cameras.address();
     params.visibility = visibility.address();
@@ -170,8 +177,7 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.width = request.width_px;
     params.height = request.height_px;
     params.view_count = view_count();
-    params.settings = {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
-                       thresholds.min_weight};
+    params.settings = reproject_settings(header.settings.reprojection);
     recorder.stage("reproject");
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
                       {gpu::groups_for(params.width, kGroup), params.height, params.view_count});
@@ -196,13 +202,15 @@ void GridRenderer::State::record_lists(const FrameHeader& header) {
     params.max_bounces = header.settings.max_bounces;
     params.flags = kernel_flags(header.settings);
     params.max_indirect = max_indirect(header.settings);
+    params.page_count = page_count;
+    params.settings = reproject_settings(header.settings.reprojection);
     recorder.stage("holes");
     recorder.dispatch_indirect(holes_kernel, {&scene.bindings()}, params, counters, shared::kCounterHoleGroups * 4);
     recorder.barrier();
     if (scene.has_blend()) {
         params.list = layer_pixels.address();
         recorder.stage("layers");
-        recorder.dispatch_indirect(layers_kernel, {&scene.bindings()}, params, counters,
+        recorder.dispatch_indirect(layers_kernel, {&scene.bindings(), &source_set}, params, counters,
                                    shared::kCounterLayerGroups * 4);
         recorder.barrier();
     }

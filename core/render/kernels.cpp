@@ -12,8 +12,8 @@
 #include "shaders/tone_map.spv.h"
 #include "shaders/trace_holes_bvh.spv.h"
 #include "shaders/trace_holes_rayquery.spv.h"
-#include "shaders/trace_layers_bvh.spv.h"
-#include "shaders/trace_layers_rayquery.spv.h"
+#include "shaders/composite_layers_bvh.spv.h"
+#include "shaders/composite_layers_rayquery.spv.h"
 #include "shaders/trace_reference_bvh.spv.h"
 #include "shaders/trace_reference_rayquery.spv.h"
 #include "shaders/trace_source_bvh.spv.h"
@@ -52,8 +52,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return {"tone_map", tone_map_spv};
     case KernelId::kTraceHoles:
         return traced("trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv);
-    case KernelId::kTraceLayers:
-        return traced("trace_layers", trace_layers_bvh_spv, trace_layers_rayquery_spv);
+    case KernelId::kCompositeLayers:
+        return traced("composite_layers", composite_layers_bvh_spv, composite_layers_rayquery_spv);
     case KernelId::kTraceReference:
         return traced("trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv);
     case KernelId::kTraceSource:

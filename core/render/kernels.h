@@ -18,7 +18,7 @@ enum class KernelId {
     kTemporal,
     kToneMap,
     kTraceHoles,
-    kTraceLayers,
+    kCompositeLayers,
     kTraceReference,
     kTraceSource,
     kVisibility,

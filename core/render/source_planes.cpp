@@ -40,13 +40,13 @@ SourcePlanes::SourcePlanes(const gpu::Device& device) : device_(device) {}
 void SourcePlanes::resize(const FrameHeader& header) {
     header_ = header;
     const Camera widened = camera();
-    const std::uint32_t count = widened.width_px * widened.height_px;
-    if (count == pixel_count_) {
+    pixel_count_ = widened.width_px * widened.height_px;
+    if (texel_count() == allocated_texels_) {
         return;
     }
-    pixel_count_ = count;
+    allocated_texels_ = texel_count();
     for (gpu::Buffer& plane : planes_) {
-        plane = gpu::Buffer(device_, static_cast<std::uint64_t>(count) * 4);
+        plane = gpu::Buffer(device_, static_cast<std::uint64_t>(allocated_texels_) * 4);
     }
 }
 
@@ -54,8 +54,8 @@ SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const 
     SourceFrame frame{header_, {}};
     const Camera widened = camera();
     for (const PlaneSemantic semantic : wanted) {
-        Plane plane{semantic, source_format(semantic), widened.width_px, widened.height_px, {}};
-        plane.bytes.resize(static_cast<std::size_t>(pixel_count_) * 4);
+        Plane plane{semantic, source_format(semantic), widened.width_px, plane_height(header_, semantic), {}};
+        plane.bytes.resize(static_cast<std::size_t>(plane.width_px) * plane.height_px * 4);
         gpu::read_buffer(device_, planes_[index_of(semantic)], plane.bytes);
         if (plane.format == PlaneFormat::kRg8) { // from the low half of each word
             for (std::size_t i = 0; i < pixel_count_; ++i) {
@@ -74,7 +74,7 @@ Decoded<bool> SourcePlanes::upload(const SourceFrame& frame) {
     for (const Plane& plane : frame.planes) {
         const bool fits = std::ranges::find(kSourceSemantics, plane.semantic) != kSourceSemantics.end() &&
                           plane.format == source_format(plane.semantic) && plane.width_px == widened.width_px &&
-                          plane.height_px == widened.height_px &&
+                          plane.height_px == plane_height(frame.header, plane.semantic) &&
                           plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
         if (!fits) {
             return decode_error("plane " + std::to_string(static_cast<int>(plane.semantic)) +

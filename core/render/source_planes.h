@@ -18,7 +18,8 @@ inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSeman
 PlaneFormat source_format(PlaneSemantic semantic);
 
 /// A SourceFrame on the device, in wire precision: what views are made from on both sides.
-/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits).
+/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). With layers, every plane has 1 + layer_count
+/// pages, one after the other; of the G-buffer planes only the first page travels: who holds the scene can make them.
 class SourcePlanes {
 public:
     explicit SourcePlanes(const gpu::Device& device);
@@ -34,13 +35,16 @@ public:
 
     const FrameHeader& header() const { return header_; }
     Camera camera() const { return with_guard_band(header_.source, header_.guard_band); }
-    std::uint32_t pixel_count() const { return pixel_count_; }
+    std::uint32_t page_count() const { return 1 + header_.layer_count; }
+    std::uint32_t pixel_count() const { return pixel_count_; } ///< of one page
+    std::uint32_t texel_count() const { return pixel_count_ * page_count(); }
     const gpu::Buffer& plane(PlaneSemantic semantic) const;
 
 private:
     const gpu::Device& device_;
     FrameHeader header_;
     std::uint32_t pixel_count_ = 0;
+    std::uint32_t allocated_texels_ = 0;
     std::array<gpu::Buffer, kSourceSemantics.size()> planes_;
 };
 

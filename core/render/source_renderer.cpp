@@ -56,6 +56,7 @@ void SourceRenderer::State::record_trace() {
     shared::TraceSourceParams params{};
     params.camera = cameras.address();
     params.visibility = surfaces.visibility().address();
+    params.layers = surfaces.layers().address();
     params.diffuse = svgf.noisy_diffuse().address();
     params.specular = svgf.noisy_specular().address();
     params.invalid_samples = invalid_samples.address();
@@ -69,7 +70,7 @@ void SourceRenderer::State::record_trace() {
     params.max_indirect = max_indirect(header.settings);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
-                      {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), 1});
+                      {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), planes.page_count()});
     recorder.barrier();
 }
 
@@ -79,7 +80,7 @@ void SourceRenderer::State::record_pack() {
     params.specular_in = svgf.specular().address();
     params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
-    params.pixel_count = planes.pixel_count();
+    params.pixel_count = planes.texel_count();
     recorder.stage("pack");
     recorder.dispatch(pack, {}, params, {gpu::groups_for(params.pixel_count, 64), 1, 1});
     recorder.barrier();
@@ -94,16 +95,17 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     State& s = *state_;
     FrameHeader timed = header;
     timed.render_times.clear();
+    timed.layer_count = s.scene.has_blend() ? kMaxLayers : 0;
     const bool has_history = s.has_history(header);
     s.planes.resize(timed);
-    s.svgf.resize(s.planes.pixel_count());
+    s.svgf.resize(s.planes.texel_count());
     s.upload_cameras();
 
     s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.svgf.geometry());
     s.record_trace();
     const Camera camera = s.planes.camera();
-    s.svgf.record(s.recorder, {s.cameras.address(), s.surfaces.visibility().address(), camera.width_px,
-                               camera.height_px, has_history, header.settings});
+    s.svgf.record(s.recorder, {s.cameras.address(), s.surfaces.visibility().address(), s.surfaces.layers().address(),
+                               camera.width_px, camera.height_px, s.planes.page_count(), has_history, header.settings});
     s.record_pack();
     s.recorder.submit();
 
@@ -136,7 +138,7 @@ SurfacePlanesRenderer::~SurfacePlanesRenderer() = default;
 
 void SurfacePlanesRenderer::render(SourcePlanes& planes) {
     State& s = *state_;
-    const std::uint64_t geometry_bytes = static_cast<std::uint64_t>(planes.pixel_count()) * 16;
+    const std::uint64_t geometry_bytes = static_cast<std::uint64_t>(planes.texel_count()) * 16;
     if (s.geometry.size_bytes() < geometry_bytes) {
         s.geometry = gpu::Buffer(s.device, geometry_bytes);
     }

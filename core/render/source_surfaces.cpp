@@ -34,6 +34,7 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     shared::SourceSurfacesParams params{};
     params.camera = camera;
     params.visibility = visibility_.address();
+    params.layers = layers_.address();
     params.depth = planes.plane(PlaneSemantic::kDepth).address();
     params.normal = planes.plane(PlaneSemantic::kNormal).address();
     params.id = planes.plane(PlaneSemantic::kId).address();
@@ -41,8 +42,9 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     params.geometry = geometry.address();
     params.width = widened.width_px;
     params.height = widened.height_px;
+    params.page_count = planes.page_count();
     recorder.stage("source_surfaces");
-    recorder.dispatch(surfaces_, {&scene_.bindings()}, params, {gpu::groups_for(planes.pixel_count(), 64), 1, 1});
+    recorder.dispatch(surfaces_, {&scene_.bindings()}, params, {gpu::groups_for(planes.texel_count(), 64), 1, 1});
     recorder.barrier();
 }
 

@@ -13,11 +13,12 @@ class SourceSurfaces {
 public:
     SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// Records visibility and surfaces for `planes` (sized for its header). `camera` is the device address of the
-    /// source's CameraRecord; `geometry` a buffer of GeometryTexel.
+    /// Records visibility and surfaces for all pages of `planes` (sized for its header). `camera` is the device address
+    /// of the source's CameraRecord; `geometry` a buffer of GeometryTexel.
     void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t camera, const gpu::Buffer& geometry);
 
     const gpu::Buffer& visibility() const { return visibility_; }
+    const gpu::Buffer& layers() const { return layers_; }
 
 private:
     const gpu::Device& device_;
@@ -25,7 +26,7 @@ private:
     gpu::Kernel trace_;
     gpu::Kernel surfaces_;
     gpu::Buffer visibility_;
-    gpu::Buffer layers_; ///< BLEND surfaces; unused here, but the kernel writes them
+    gpu::Buffer layers_; ///< BLEND surfaces, kMaxLayers per pixel
 };
 
 } // namespace fieldcast::render

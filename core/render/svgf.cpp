@@ -43,16 +43,16 @@ Svgf::Svgf(const gpu::Device& device, const scene::GpuScene& scene)
       variance_(make_plain_kernel(device, KernelId::kSvgfVariance, sizeof(shared::FilterParams), {&filter_layout_})),
       atrous_(make_plain_kernel(device, KernelId::kSvgfAtrous, sizeof(shared::FilterParams), {&filter_layout_})) {}
 
-void Svgf::resize(std::uint32_t pixel_count) {
-    if (pixel_count == pixel_count_) {
+void Svgf::resize(std::uint32_t texel_count) {
+    if (texel_count == texel_count_) {
         return;
     }
-    pixel_count_ = pixel_count;
+    texel_count_ = texel_count;
     for (SourceHistory& history : history_) {
-        history.resize(device_, pixel_count);
+        history.resize(device_, texel_count);
     }
     const auto make = [&](gpu::Buffer& buffer, gpu::TexelView& view) {
-        buffer = gpu::Buffer(device_, static_cast<std::uint64_t>(pixel_count) * 16);
+        buffer = gpu::Buffer(device_, static_cast<std::uint64_t>(texel_count) * 16);
         view = gpu::TexelView(device_, buffer, kFloats);
     };
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -104,17 +104,19 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
     shared::TemporalParams params{};
     params.cameras = frame.cameras;
     params.visibility = frame.visibility;
+    params.layers = frame.layers;
     params.diffuse = now.diffuse.address();
     params.specular = now.specular.address();
     params.moments = now.moments.address();
     params.history_length = now.length.address();
     params.width = frame.width;
     params.height = frame.height;
+    params.page_count = frame.page_count;
     params.flags = frame.has_history && frame.settings.temporal_accumulation ? shared::kFlagTemporal : 0;
     params.alpha = frame.settings.temporal_alpha;
     recorder.stage("temporal");
     recorder.dispatch(temporal_, {&scene_.bindings(), &temporal_sets_[current_]}, params,
-                      {gpu::groups_for(pixel_count_, kGroup), 1, 1});
+                      {gpu::groups_for(texel_count_, kGroup), 1, 1});
     recorder.barrier();
     result_diffuse_ = &now.diffuse;
     result_specular_ = &now.specular;
@@ -126,10 +128,11 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
     params.camera = frame.cameras;
     params.width = frame.width;
     params.height = frame.height;
+    params.page_count = frame.page_count;
     params.sigma_luminance = 4.0F; // the paper's values
     params.sigma_depth = 1.0F;
     params.normal_squarings = 7; // 128
-    const gpu::GroupCount groups{gpu::groups_for(pixel_count_, kGroup), 1, 1};
+    const gpu::GroupCount groups{gpu::groups_for(texel_count_, kGroup), 1, 1};
     recorder.stage("denoise");
     std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
     const auto run = [&](const gpu::Kernel& kernel, std::uint32_t output) {
@@ -144,7 +147,7 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
         params.step = 1U << level;
         run(atrous_, input == 1 ? 2 : 1);
         if (level == 0) {
-            const std::uint64_t bytes = static_cast<std::uint64_t>(pixel_count_) * 16;
+            const std::uint64_t bytes = static_cast<std::uint64_t>(texel_count_) * 16;
             recorder.copy(scratch_[input - 1][0], history_[current_].diffuse, bytes);
             recorder.copy(scratch_[input - 1][1], history_[current_].specular, bytes);
         }

@@ -36,13 +36,15 @@ public:
     struct Frame {
         std::uint64_t cameras = 0;
         std::uint64_t visibility = 0;
+        std::uint64_t layers = 0;
         std::uint32_t width = 0;
         std::uint32_t height = 0;
+        std::uint32_t page_count = 1;
         bool has_history = false;
         RenderSettings settings;
     };
 
-    void resize(std::uint32_t pixel_count);
+    void resize(std::uint32_t texel_count); ///< pixels of all pages
 
     /// Where the path tracer writes its noisy illumination, and source_surfaces.comp the geometry of this frame.
     const gpu::Buffer& noisy_diffuse() const { return noisy_[0]; }
@@ -69,7 +71,7 @@ private:
     gpu::Kernel temporal_;
     gpu::Kernel variance_;
     gpu::Kernel atrous_;
-    std::uint32_t pixel_count_ = 0;
+    std::uint32_t texel_count_ = 0;
     std::uint32_t current_ = 0;
     std::array<SourceHistory, 2> history_;
     std::array<gpu::Buffer, 2> noisy_;

@@ -185,6 +185,7 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     to_proto(header.source, *message.mutable_source());
     to_proto(header.guard_band, *message.mutable_guard_band());
     to_proto(header.settings, *message.mutable_settings());
+    message.set_layer_count(header.layer_count);
     message.clear_render_times();
     for (const StageTime& stage : header.render_times) {
         v1::StageTime& entry = *message.add_render_times();
@@ -209,9 +210,13 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
         return tl::unexpected(band.error());
     }
     header.guard_band = *band;
+    if (message.layer_count() != 0 && message.layer_count() != kMaxLayers) {
+        return decode_error("header.layer_count: " + std::to_string(message.layer_count()) + ", expected 0 or 2");
+    }
+    header.layer_count = message.layer_count();
     const Camera widened = with_guard_band(*source, *band);
-    if (!is_side(widened.width_px) || !is_side(widened.height_px)) {
-        return decode_error("header: source with guard band exceeds 16384 pixels");
+    if (!is_side(widened.width_px) || !is_side(plane_height(header, PlaneSemantic::kDiffuse))) {
+        return decode_error("header: source with guard band and layers exceeds 16384 pixels");
     }
     const auto settings = from_proto(message.settings());
     if (!settings) {

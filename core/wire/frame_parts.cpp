@@ -22,7 +22,7 @@ Decoded<void> check_size(std::uint32_t width_px, std::uint32_t height_px, const 
     return {};
 }
 
-Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const Camera& widened) {
+Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader& header) {
     const auto semantic = from_proto(message.semantic());
     const auto format = from_proto(message.format());
     if (!semantic || !format || !from_proto(message.codec())) {
@@ -32,8 +32,9 @@ Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const Camera& wide
         return decode_error("header.planes: semantic " + std::to_string(message.semantic()) +
                             " is not sent in format " + std::to_string(message.format()));
     }
-    if (message.width_px() != widened.width_px || message.height_px() != widened.height_px) {
-        return decode_error("header.planes: size differs from the source with guard band");
+    const Camera widened = with_guard_band(header.source, header.guard_band);
+    if (message.width_px() != widened.width_px || message.height_px() != plane_height(header, *semantic)) {
+        return decode_error("header.planes: size differs from the source with guard band (and layers)");
     }
     return Part{*semantic, *format, message.width_px(), message.height_px(), 0, {}};
 }
@@ -67,7 +68,7 @@ Decoded<std::vector<Part>> parts_of_planes(const v1::PlanesHeader& message, cons
     }
     std::vector<Part> parts;
     for (const v1::PlaneHeader& entry : message.planes()) {
-        auto part = part_from_proto(entry, widened);
+        auto part = part_from_proto(entry, header);
         if (!part) {
             return tl::unexpected(part.error());
         }

@@ -3,6 +3,8 @@
 // GGX: B. Walter et al. Microfacet Models for Refraction through Rough Surfaces. EGSR 2007; height-correlated Smith.
 // Visible normals: J. Dupuy, A. Benyoub. Sampling Visible GGX Normals with Spherical Caps. CGF 42(8), 2023.
 // Multiple scattering: E. Turquin. Practical multiple scattering compensation for microfacet models. 2019.
+// Differs from glTF's appendix B: what reflection leaves to the other lobes is 1 − its directional albedo instead of
+// 1 − F(v·h), so that the lobes add up to no more than the light there is (albedo scaling, as in Turquin's section 6).
 // All directions are unit vectors in the frame of the shading normal (z), pointing away from the surface.
 #ifndef FIELDCAST_LIB_BSDF
 #define FIELDCAST_LIB_BSDF
@@ -39,13 +41,14 @@ vec2 ggx_albedo(float cos_view, float roughness) {
 // What is needed to evaluate and sample the BSDF at one surface point for one viewing direction.
 struct Bsdf {
     mat3 world_from_local;
-    vec3 view;            // local, towards the viewer
-    vec3 diffuse_colour;
+    vec3 view;                // local, towards the viewer
     vec3 f0;
-    vec3 transmission;
-    float alpha;          // GGX
-    vec3 specular_albedo; // F0·A + B with compensation: what specular illumination is divided by
-    vec3 compensation;
+    float f90;
+    vec3 compensation;        // of the reflection
+    vec3 transmission;        // scale of the transmitted lobe
+    float alpha;              // GGX
+    vec3 diffuse_modulation;  // what diffuse illumination is multiplied with
+    vec3 specular_modulation; // what specular illumination is divided by and multiplied with again
     float probability_diffuse;
     float probability_specular;
     float probability_transmission;
@@ -56,31 +59,35 @@ Bsdf make_bsdf(Surface s, vec3 direction) {
     b.world_from_local = frame_of(s.normal);
     b.view = -direction * b.world_from_local;
     b.view.z = max(b.view.z, 1e-4);
-    b.diffuse_colour = s.diffuse_colour;
     b.f0 = s.f0;
-    b.transmission = s.transmission;
+    b.f90 = s.f90;
     b.alpha = max(s.roughness * s.roughness, 1e-3);
     vec2 albedo = ggx_albedo(b.view.z, s.roughness);
-    b.compensation = 1.0 + s.f0 * (1.0 / max(albedo.x + albedo.y, 1e-3) - 1.0);
-    b.specular_albedo = (s.f0 * albedo.x + albedo.y) * b.compensation;
-    float specular = luminance(b.specular_albedo);
-    vec3 rest = max(vec3(0.0), 1.0 - b.specular_albedo);
-    float diffuse = luminance(rest * s.diffuse_colour);
+    float single = max(albedo.x + albedo.y, 1e-3); // of a lobe that reflects everything once
+    b.compensation = 1.0 + s.f0 * (1.0 / single - 1.0);
+    vec3 reflected = (s.f0 * albedo.x + s.f90 * albedo.y) * b.compensation;
+    vec3 rest = max(vec3(0.0), 1.0 - reflected);
+    b.transmission = rest * s.transmission / single;
+    b.diffuse_modulation = rest * s.diffuse_colour;
+    b.specular_modulation = max(reflected + rest * s.transmission, vec3(1e-3));
+    float specular = luminance(reflected);
+    float diffuse = luminance(b.diffuse_modulation);
     float transmitted = luminance(rest * s.transmission);
     float total = max(specular + diffuse + transmitted, 1e-6);
     b.probability_diffuse = diffuse > 0.0 ? max(diffuse / total, 0.05) : 0.0;
     b.probability_transmission = transmitted > 0.0 ? max(transmitted / total, 0.05) : 0.0;
-    b.probability_specular = max(specular / total, 0.05);
-    float sum = b.probability_diffuse + b.probability_transmission + b.probability_specular;
+    b.probability_specular = specular > 0.0 ? max(specular / total, 0.05) : 0.0;
+    float sum = max(b.probability_diffuse + b.probability_transmission + b.probability_specular, 1e-6);
     b.probability_diffuse /= sum;
     b.probability_transmission /= sum;
     b.probability_specular /= sum;
     return b;
 }
 
-float ggx_distribution(float cos_half, float alpha) {
+// The sine comes from x and y: 1 − cos² would lose all digits for small α.
+float ggx_distribution(vec3 half_vector, float alpha) {
     float a2 = alpha * alpha;
-    float d = cos_half * cos_half * (a2 - 1.0) + 1.0;
+    float d = dot(half_vector.xy, half_vector.xy) + a2 * half_vector.z * half_vector.z;
     return a2 / (kPi * d * d);
 }
 
@@ -94,21 +101,15 @@ float ggx_visibility(float cos_light, float cos_view, float alpha) {
     return 0.5 / (cos_light * smith_lambda_term(cos_view, alpha) + cos_view * smith_lambda_term(cos_light, alpha));
 }
 
-// Density of a direction reflected at a visible normal.
-float pdf_ggx(Bsdf b, float cos_half) {
-    float g1_over_view = 2.0 / (b.view.z + smith_lambda_term(b.view.z, b.alpha));
-    return 0.25 * ggx_distribution(cos_half, b.alpha) * g1_over_view;
-}
-
-vec3 fresnel(vec3 f0, float cos_view_half) {
+vec3 fresnel(vec3 f0, float f90, float cos_view_half) { // Schlick
     float m = clamp(1.0 - cos_view_half, 0.0, 1.0);
     float m2 = m * m;
-    return f0 + (1.0 - f0) * (m2 * m2 * m);
+    return f0 + (f90 - f0) * (m2 * m2 * m);
 }
 
 // Value of the BSDF times |cos|, split for demodulation, with the density of sample_bsdf.
 struct BsdfValue {
-    vec3 diffuse;  // without the diffuse colour
+    vec3 diffuse;  // without diffuse_modulation
     vec3 specular; // reflection and transmission
     float pdf;
 };
@@ -122,16 +123,17 @@ BsdfValue eval_bsdf(Bsdf b, vec3 light) {
     bool is_reflection = light.z > 0.0;
     vec3 mirrored = vec3(light.xy, cos_light); // a thin wall transmits what it would reflect, mirrored to its back
     vec3 half_vector = normalize(b.view + mirrored);
-    vec3 f = fresnel(b.f0, dot(b.view, half_vector));
-    float lobe = ggx_distribution(half_vector.z, b.alpha) * ggx_visibility(cos_light, b.view.z, b.alpha) * cos_light;
-    float pdf = pdf_ggx(b, half_vector.z);
+    float distribution = ggx_distribution(half_vector, b.alpha);
+    float lobe = distribution * ggx_visibility(cos_light, b.view.z, b.alpha) * cos_light;
+    // Density of a direction reflected at a visible normal: D · G1 / (4 n·v).
+    float pdf = 0.5 * distribution / (b.view.z + smith_lambda_term(b.view.z, b.alpha));
     if (is_reflection) {
-        value.specular = f * b.compensation * lobe;
-        float keep = 1.0 / kPi * cos_light;
-        value.diffuse = max(vec3(0.0), 1.0 - f) * keep;
-        value.pdf = b.probability_specular * pdf + b.probability_diffuse * keep;
+        float lambert = cos_light / kPi;
+        value.specular = fresnel(b.f0, b.f90, dot(b.view, half_vector)) * b.compensation * lobe;
+        value.diffuse = vec3(b.probability_diffuse > 0.0 ? lambert : 0.0); // metals would only add noise to store
+        value.pdf = b.probability_specular * pdf + b.probability_diffuse * lambert;
     } else {
-        value.specular = (1.0 - f) * b.transmission * lobe;
+        value.specular = b.transmission * lobe;
         value.pdf = b.probability_transmission * pdf;
     }
     return value;
@@ -159,11 +161,6 @@ vec3 sample_bsdf(Bsdf b, float choice, vec2 u) {
     }
     bool transmits = choice >= b.probability_diffuse + b.probability_specular;
     return transmits ? vec3(light.xy, -light.z) : light;
-}
-
-// What specular illumination is divided by and multiplied with again.
-vec3 specular_modulation(Bsdf b) {
-    return max(b.specular_albedo + max(vec3(0.0), 1.0 - b.specular_albedo) * b.transmission, vec3(1e-3));
 }
 
 #endif

@@ -7,6 +7,7 @@
 #define FIELDCAST_LIB_FILTER_TAPS
 #include "lib/camera.glsl"
 #include "lib/packing.glsl"
+#include "lib/pages.glsl"
 
 layout(set = 0, binding = kFilterGeometry) uniform usamplerBuffer geometry_;
 layout(set = 0, binding = kFilterDiffuse) uniform samplerBuffer diffuse_;
@@ -21,6 +22,7 @@ float luminance(vec3 c) {
 
 struct Centre {
     ivec2 at;
+    int page_start;      // texel of the page's first pixel
     float depth;
     vec2 depth_gradient; // per pixel
     vec3 normal;
@@ -35,13 +37,15 @@ vec2 depth_gradient(CameraRecord camera, ivec2 at, float depth, vec3 normal) {
     return vec2(-dot(normal, camera.right), dot(normal, camera.up)) * (depth / (along * camera.focal_px));
 }
 
-Centre load_centre(ivec2 at, uvec4 geometry) {
+Centre load_centre(uint index, uvec4 geometry) {
+    PagePixel pixel = locate_page_pixel(index, params.width, params.height);
     Centre c;
-    c.at = at;
+    c.at = ivec2(pixel.x, pixel.y);
+    c.page_start = int(pixel.page * params.width * params.height);
     c.depth = uintBitsToFloat(geometry.x);
     c.normal = unpack_normal(geometry.y);
     c.id = geometry.z;
-    c.depth_gradient = depth_gradient(params.camera.at[0], at, c.depth, c.normal);
+    c.depth_gradient = depth_gradient(params.camera.at[0], c.at, c.depth, c.normal);
     return c;
 }
 
@@ -55,6 +59,10 @@ float geometry_weight(Centre c, ivec2 offset, uvec4 geometry) {
         cos_normals *= cos_normals; // cos^σ with σ = 2^normal_squarings: pow() costs several times as much
     }
     return geometry.z == c.id ? exp(-off_plane) * cos_normals : 0.0;
+}
+
+int tap_texel(Centre c, ivec2 at) {
+    return c.page_start + at.y * int(params.width) + at.x;
 }
 
 bool is_inside(ivec2 at) {

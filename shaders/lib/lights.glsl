@@ -70,7 +70,18 @@ float pdf_environment(SceneInfo info, vec3 normal, vec3 direction) {
     return probability * size.x / (2.0 * kPi * max(top - bottom, 1e-9)); // texel's solid angle, exactly
 }
 
-LightSample sample_environment(SceneInfo info, vec3 normal, vec2 u) {
+// Index below `count`, and in `rest` how far inside its share the numbers lie. A float's 24 bits are too few for the
+// texels of an environment and their alias decision, so the low bits of `fine` follow those of `u`.
+uint pick_index(float u, float fine, uint count, out float rest) {
+    uint bits = (uint(u * 16777216.0) << 8) | (uint(fine * 16777216.0) & 255u);
+    uint index;
+    uint fraction;
+    umulExtended(bits, count, index, fraction);
+    rest = float(fraction >> 8) * (1.0 / 16777216.0);
+    return index;
+}
+
+LightSample sample_environment(SceneInfo info, vec3 normal, float choice, vec2 u) {
     LightSample s;
     s.distance_m = 1e30;
     if (info.environment_width == 0u) {
@@ -81,14 +92,10 @@ LightSample sample_environment(SceneInfo info, vec3 normal, vec2 u) {
         s.weight = info.sky / s.pdf;
         return s;
     }
-    uint count = info.environment_width * info.environment_height;
-    float scaled = u.x * float(count);
-    uint index = min(uint(scaled), count - 1u);
-    float rest = min(scaled - float(index), 0.99999994);
+    float across; // inside the texel
+    uint index = pick_index(u.x, u.y, info.environment_width * info.environment_height, across);
     vec4 entry = texelFetch(environment_alias_, int(index));
-    bool keep = rest < entry.x;
-    rest = keep ? rest / max(entry.x, 1e-20) : (rest - entry.x) / max(1.0 - entry.x, 1e-20);
-    index = keep ? index : floatBitsToUint(entry.y);
+    index = choice < entry.x ? index : floatBitsToUint(entry.y);
     uint row = index / info.environment_width;
     uint col = index - row * info.environment_width;
     // uniform in solid angle inside the texel
@@ -96,7 +103,7 @@ LightSample sample_environment(SceneInfo info, vec3 normal, vec2 u) {
     float bottom = cos(float(row + 1u) * kPi / float(info.environment_height));
     float cos_theta = mix(top, bottom, u.y);
     float sin_theta = sqrt(max(0.0, 1.0 - cos_theta * cos_theta));
-    float phi = ((float(col) + clamp(rest, 0.0, 1.0)) / float(info.environment_width) - 0.5) * 2.0 * kPi;
+    float phi = ((float(col) + across) / float(info.environment_width) - 0.5) * 2.0 * kPi;
     s.direction = vec3(sin_theta * sin(phi), cos_theta, -sin_theta * cos(phi));
     float probability = texelFetch(environment_alias_, int(index)).z;
     s.pdf = probability * float(info.environment_width) / (2.0 * kPi * max(top - bottom, 1e-9));
@@ -104,17 +111,28 @@ LightSample sample_environment(SceneInfo info, vec3 normal, vec2 u) {
     return s;
 }
 
-// Solid angle density of meeting `emitter` at `distance_m` under `cos_light` by next event estimation.
-float pdf_emitter(uint emitter, float distance_m, float cos_light) {
-    vec4 tail = texelFetch(emitters_, int(emitter) * 2 + 1);
-    return tail.x * distance_m * distance_m / max(tail.y * cos_light, 1e-12);
+// Solid angle density of meeting `emitter` at `distance_m` under `cos_light` by next event estimation. `area_m2` is the
+// triangle's area now: instances may grow.
+float pdf_emitter(uint emitter, float area_m2, float distance_m, float cos_light) {
+    float probability = texelFetch(emitters_, int(emitter) * 2 + 1).x;
+    return probability * distance_m * distance_m / max(area_m2 * cos_light, 1e-12);
+}
+
+// How much of a surface there is where light sampling found it: the tracer meets MASK and BLEND surfaces less often.
+float emitter_coverage(WorldTriangle t, vec2 barycentrics) {
+    uint mode = floatBitsToUint(texelFetch(materials_, int(t.material) * 5 + 3).y) & kMaterialAlphaMask;
+    if (mode == kAlphaOpaque) {
+        return 1.0;
+    }
+    float alpha = surface_alpha(t.instance, t.primitive, barycentrics);
+    return mode == kAlphaBlend ? alpha : (surface_is_solid_at(t.instance, t.primitive, barycentrics) ? 1.0 : 0.0);
 }
 
 LightSample sample_emitter(SceneInfo info, vec3 position, float choice, vec2 u) {
-    float scaled = choice * float(info.emitter_count);
-    uint index = min(uint(scaled), info.emitter_count - 1u);
+    float rest;
+    uint index = pick_index(choice, u.y, info.emitter_count, rest);
     vec4 head = texelFetch(emitters_, int(index) * 2);
-    if (scaled - float(index) >= head.x) {
+    if (rest >= head.x) {
         index = floatBitsToUint(head.y);
         head = texelFetch(emitters_, int(index) * 2);
     }
@@ -129,11 +147,9 @@ LightSample sample_emitter(SceneInfo info, vec3 position, float choice, vec2 u) 
     vec3 area_normal = cross(t.edge1, t.edge2);
     float double_area = max(length(area_normal), 1e-20);
     float cos_light = abs(dot(area_normal, s.direction)) / double_area;
-    float probability = texelFetch(emitters_, int(index) * 2 + 1).x;
-    float pdf = probability * distance_squared / max(0.5 * double_area * cos_light, 1e-12);
-    Surface surface = make_surface(t, barycentrics, s.direction, 0.0);
-    s.pdf = pdf;
-    s.weight = cos_light > 1e-6 ? surface.emission / pdf : vec3(0.0);
+    s.pdf = pdf_emitter(index, 0.5 * double_area, s.distance_m, cos_light);
+    vec3 emission = make_surface(t, barycentrics, s.direction, 0.0).emission * emitter_coverage(t, barycentrics);
+    s.weight = cos_light > 1e-6 ? emission / s.pdf : vec3(0.0);
     return s;
 }
 
@@ -185,15 +201,17 @@ LightSample sample_light(SceneInfo info, vec3 position, vec3 normal, float choic
     float probability;
     if (choice < info.probability_environment) {
         probability = info.probability_environment;
-        s = sample_environment(info, normal, u);
+        s = sample_environment(info, normal, choice / probability, u);
     } else if (choice < info.probability_environment + info.probability_emitter) {
         probability = info.probability_emitter;
         float rest = (choice - info.probability_environment) / probability;
         s = sample_emitter(info, position, clamp(rest, 0.0, 0.99999994), u);
-    } else {
+    } else if (info.probability_light > 0.0) {
         probability = info.probability_light;
-        float rest = (choice - info.probability_environment - info.probability_emitter) / max(probability, 1e-9);
+        float rest = (choice - info.probability_environment - info.probability_emitter) / probability;
         s = sample_punctual(info, position, clamp(rest, 0.0, 0.99999994), u);
+    } else { // no light at all, or probabilities that add up to a little less than 1
+        return LightSample(normal, 0.0, vec3(0.0), 1.0);
     }
     s.weight /= probability;
     s.pdf *= probability;

@@ -36,8 +36,8 @@ vec3 trace_radiance(TraceListParams params, Surface s, vec3 direction, float con
         }
     }
     float scale = 1.0 / float(params.samples_per_pixel);
-    vec3 modulation = specular_modulation(make_bsdf(s, direction));
-    return s.emission + (sum.diffuse * s.diffuse_colour + sum.specular * modulation) * scale;
+    Bsdf b = make_bsdf(s, direction);
+    return s.emission + (sum.diffuse * b.diffuse_modulation + sum.specular * b.specular_modulation) * scale;
 }
 
 #endif

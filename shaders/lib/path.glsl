@@ -13,8 +13,8 @@ struct PathSettings {
     float max_indirect; // luminance of one indirect contribution; 0: no limit
 };
 
-// Light arriving at the first surface, demodulated: diffuse without the diffuse colour, specular over
-// specular_modulation().
+// Light arriving at the first surface, demodulated: reflected diffusely by diffuse_modulation = 1, specularly over
+// specular_modulation.
 struct Illumination {
     vec3 diffuse;
     vec3 specular;
@@ -29,9 +29,9 @@ vec3 offset_origin(vec3 p, vec3 normal) {
                 abs(p.z) < 1.0 / 32.0 ? near_zero.z : moved.z);
 }
 
-float power_heuristic(float a, float b) {
-    float a2 = a * a;
-    return a2 / max(a2 + b * b, 1e-30);
+float power_heuristic(float a, float b) { // a > 0; squares of densities themselves may overflow
+    float ratio = b / a;
+    return 1.0 / (1.0 + ratio * ratio);
 }
 
 // Directions must lie on the same side of the shading and the geometric normal.
@@ -55,7 +55,12 @@ vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, float choice, vec2 u, out 
         return vec3(0.0);
     }
     float mis = light.pdf == kDeltaLight ? 1.0 : power_heuristic(light.pdf, value.pdf);
-    float visible = trace_transmittance(path_origin(s, light.direction), light.direction, light.distance_m * 0.9999);
+    // From the moved origin to the very point that was sampled: a ray along the old direction could reach a near emitter
+    // before its end.
+    vec3 origin = path_origin(s, light.direction);
+    bool is_far = light.distance_m > 1e20;
+    vec3 to_light = is_far ? light.direction : s.position + light.direction * light.distance_m - origin;
+    float visible = trace_transmittance(origin, to_light, is_far ? 1e30 : 0.9999);
     return light.weight * (mis * visible);
 }
 
@@ -65,7 +70,7 @@ vec3 emitted_light(SceneInfo info, PathSettings settings, Surface s, vec3 direct
         return s.emission;
     }
     float cos_light = abs(dot(s.geometric_normal, direction));
-    float light_pdf = info.probability_emitter * pdf_emitter(s.emitter, distance_m, cos_light);
+    float light_pdf = info.probability_emitter * pdf_emitter(s.emitter, s.area_m2, distance_m, cos_light);
     return s.emission * power_heuristic(pdf, light_pdf);
 }
 
@@ -88,7 +93,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
                         float cone_spread, inout Sampler rng) {
     Illumination result = Illumination(vec3(0.0), vec3(0.0));
     Bsdf b = make_bsdf(s, direction);
-    vec3 modulation = specular_modulation(b);
+    vec3 modulation = b.specular_modulation;
     vec3 first_diffuse = vec3(0.0); // of the first vertex's sampled direction: value over density
     vec3 first_specular = vec3(0.0);
     vec3 throughput = vec3(1.0);    // from the second vertex on
@@ -105,7 +110,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
                 result.diffuse += light * value.diffuse;
                 result.specular += light * value.specular / modulation;
             } else {
-                indirect += throughput * light * (value.diffuse * b.diffuse_colour + value.specular);
+                indirect += throughput * light * (value.diffuse * b.diffuse_modulation + value.specular);
             }
         }
         vec3 local = sample_bsdf(b, choices.y, bsdf_u);
@@ -118,7 +123,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
             first_diffuse = value.diffuse / value.pdf;
             first_specular = value.specular / (value.pdf * modulation);
         } else {
-            throughput *= (value.diffuse * b.diffuse_colour + value.specular) / value.pdf;
+            throughput *= (value.diffuse * b.diffuse_modulation + value.specular) / value.pdf;
         }
         if (bounce >= 3u) { // Russian roulette
             float survival = clamp(max(throughput.r, max(throughput.g, throughput.b)), 0.05, 0.95);
@@ -128,7 +133,8 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
             throughput /= survival;
         }
         vec3 normal = s.normal;
-        Hit hit = trace_closest(path_origin(s, direction), direction, 0.0, 1e30, kTraceStochastic, rng.state);
+        uint alpha_seed = hash_combine(rng.state, bounce); // every segment decides anew what BLEND surfaces it meets
+        Hit hit = trace_closest(path_origin(s, direction), direction, 0.0, 1e30, kTraceStochastic, alpha_seed);
         vec3 arriving;
         bool escaped = hit.instance == kNoInstance;
         if (escaped) {

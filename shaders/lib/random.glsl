@@ -75,8 +75,9 @@ vec2 next_pair(inout Sampler rng) {
         return vec2(first, next_float(rng));
     }
     uint seed = hash_combine(rng.seed, dimension);
-    // Owen scrambling of the index bits is a permutation of the low 12 bits: pairs become independent.
-    uint index = scramble_reversed(rng.index, seed) & kSobolIndexMask;
+    // Owen scrambling permutes the low 12 bits of the index, block by aligned block: pairs become independent, and any
+    // 2^k samples that start at a multiple of 2^k stay well distributed in two dimensions.
+    uint index = owen_scramble(rng.index, seed) & kSobolIndexMask;
     uint x = owen_scramble(bitfieldReverse(index), pcg_hash(seed));
     uint y = owen_scramble(sobol_second(index), pcg_hash(seed ^ 0xB5297A4Du));
     return vec2(unit_float(x), unit_float(y));

@@ -112,11 +112,11 @@ vec4 sample_texture(uint use, vec4 uv01, float lod_offset) {
     vec3 uv = vec3((place >> 24) == 0u ? uv01.xy : uv01.zw, 1.0);
     uint array = place & 15u;
     float layer = float((place >> 4) & 0xFFFFu);
-    float half_texel = 0.5 / b.w;
-    vec2 wrapped = vec2(wrap_coordinate(dot(a.xyz, uv), (place >> 20) & 3u, half_texel),
-                        wrap_coordinate(dot(b.xyz, uv), (place >> 22) & 3u, half_texel));
     float scale = abs(a.x * b.y - a.y * b.x); // texels per uv area change of KHR_texture_transform
     float lod = max(0.0, lod_offset + log2(b.w * sqrt(max(scale, 1e-12))));
+    float half_texel = min(0.5, 0.5 * exp2(ceil(lod)) / b.w); // of the coarser level that is filtered
+    vec2 wrapped = vec2(wrap_coordinate(dot(a.xyz, uv), (place >> 20) & 3u, half_texel),
+                        wrap_coordinate(dot(b.xyz, uv), (place >> 22) & 3u, half_texel));
     vec4 result = vec4(1.0);
     SAMPLE_ARRAY(0u)
     SAMPLE_ARRAY(1u)

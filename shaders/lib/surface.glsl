@@ -27,11 +27,13 @@ struct Surface {
     vec3 normal;           // shading normal, unit, on the viewer's side
     vec3 diffuse_colour;   // base colour × (1 − metallic)
     vec3 f0;               // reflectance at normal incidence
+    float f90;             // at grazing incidence: 1, but less for indices of refraction near 1
     vec3 transmission;     // thin wall: colour × factor × (1 − metallic)
     vec3 emission;         // towards the viewer, W / (m² sr)
     float roughness;       // perceptual; GGX α = roughness²
     float metallic;
     float alpha;           // coverage of BLEND materials, else 1
+    float area_m2;         // of the triangle
     uint material;
     uint emitter;          // index into emitters, or kNoIndex
 };
@@ -121,6 +123,22 @@ vec4 base_colour(MaterialRecord m, vec4 uv, vec4 vertex_colour, float lod_offset
     return colour;
 }
 
+// Interpolated and mapped normals may turn away from the viewer, or mirror him into the surface, which would be black.
+// Bends `normal` until the mirror direction just leaves `geometric` (A. Keller et al. The Iray Light Transport Simulation
+// and Rendering System. 2017, section on bent normals); others stay as they are.
+vec3 bent_normal(vec3 normal, vec3 geometric, vec3 direction) {
+    const float kMinCos = 1e-3; // of the mirror direction and `geometric`
+    vec3 mirrored = reflect(direction, normal);
+    float cos_mirrored = dot(mirrored, geometric);
+    if (cos_mirrored >= kMinCos && dot(normal, direction) < 0.0) {
+        return normal;
+    }
+    vec3 lifted = normalize(mirrored + geometric * (kMinCos - cos_mirrored));
+    vec3 bent = lifted - direction;
+    float size = dot(bent, bent);
+    return size > 1e-12 ? bent * inversesqrt(size) : geometric;
+}
+
 // Everything about the point of `t` with `barycentrics`, seen along unit `direction`. `cone_width_m` is the width of
 // the pixel's cone there, for the level of detail (T. Akenine-Möller et al. Improved Shader and Texture Level of Detail
 // Using Ray Cones. JCGT 10(1), 2021).
@@ -159,8 +177,8 @@ Surface make_surface(WorldTriangle t, vec2 barycentrics, vec3 direction, float c
     s.position = t.p0 + t.edge1 * barycentrics.x + t.edge2 * barycentrics.y;
     s.geometric_normal = is_front ? geometric : -geometric;
     normal = is_front ? normal : -normal;
-    float facing = -dot(normal, direction);
-    s.normal = facing > 1e-3 ? normal : normalize(normal - direction * (1e-3 - facing)); // never seen from behind
+    s.normal = bent_normal(normal, s.geometric_normal, direction);
+    s.area_m2 = 0.5 * double_area;
 
     vec4 colour = base_colour(m, uv, vertex_colour, lod_offset);
     s.metallic = m.metallic;
@@ -178,7 +196,10 @@ Surface make_surface(WorldTriangle t, vec2 barycentrics, vec3 direction, float c
     vec3 dielectric = colour.rgb * (1.0 - s.metallic);
     s.diffuse_colour = dielectric * (1.0 - transmission);
     s.transmission = dielectric * transmission;
-    s.f0 = mix(vec3(reflectance * reflectance), colour.rgb, s.metallic);
+    reflectance *= reflectance;
+    s.f0 = mix(vec3(reflectance), colour.rgb, s.metallic);
+    // Schlick's formula takes 1, also for ior = 1 where there is no interface. Below 2 % (water) nothing dielectric is left.
+    s.f90 = mix(min(1.0, 50.0 * reflectance), 1.0, s.metallic);
     s.alpha = (m.flags & kMaterialAlphaMask) == kAlphaBlend ? colour.a : 1.0;
     s.emission = vec3(0.0);
     if ((m.flags & kMaterialEmissive) != 0u && (is_front || (m.flags & kMaterialDoubleSided) != 0u)) {

@@ -37,14 +37,19 @@ struct VisibilityParams {
     uint unused;
 };
 
+// The source has pages: page 0 is what its pixels see (Visibility), pages 1 and 2 are the BLEND surfaces in front of
+// that, nearest first; only scenes with BLEND surfaces have them. Arrays over the source hold one page after the other.
+const uint kMaxLayers = 2;
+
 const uint kFlagNextEventEstimation = 1;
 const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
 
-// trace_source.comp: path traces every pixel of the source.
+// trace_source.comp: path traces every pixel of the source, every page.
 struct TraceSourceParams {
     CameraBuffer camera;
     VisibilityBuffer visibility;
+    VisibilityBuffer layers;
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
     Vec4Buffer specular;         // out
     UintBuffer invalid_samples;  // counter
@@ -77,6 +82,7 @@ struct TraceReferenceParams {
 struct SourceSurfacesParams {
     CameraBuffer camera;
     VisibilityBuffer visibility;
+    VisibilityBuffer layers;
     FloatBuffer depth;    // out: wire planes
     UintBuffer normal;
     UintBuffer id;
@@ -84,6 +90,7 @@ struct SourceSurfacesParams {
     Uvec4Buffer geometry; // out: GeometryTexel
     uint width;
     uint height;
+    uint page_count;
 };
 
 // What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness | metallic.
@@ -98,12 +105,14 @@ struct GeometryTexel {
 struct TemporalParams {
     CameraBuffer cameras;        // current, previous
     VisibilityBuffer visibility;
+    VisibilityBuffer layers;
     Vec4Buffer diffuse;          // in: noisy; out: accumulated, a = variance of luminance
     Vec4Buffer specular;
     Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
     FloatBuffer history_length;  // out: frames
     uint width;
     uint height;
+    uint page_count;
     uint flags;                  // kFlagTemporal: there is a history
     float alpha;
 };
@@ -123,6 +132,7 @@ struct FilterParams {
     Vec4Buffer specular;
     uint width;
     uint height;
+    uint page_count;
     uint step;           // pixels between taps
     float sigma_luminance;
     float sigma_depth;
@@ -140,7 +150,7 @@ struct PackParams {
     Vec4Buffer specular_in;
     UintBuffer diffuse;  // out: R11G11B10F
     UintBuffer specular;
-    uint pixel_count;
+    uint pixel_count; // of all pages
 };
 
 // interleave_source.comp: wire planes into the texels that reproject.comp reads.
@@ -153,7 +163,7 @@ struct InterleaveParams {
     UintBuffer material;
     Uvec4Buffer geometry;     // out: GeometryTexel
     Uvec2Buffer illumination; // out: diffuse, specular
-    uint pixel_count;
+    uint pixel_count;         // of all pages
 };
 
 // What one target view needs besides its camera.
@@ -169,6 +179,7 @@ const uint kCounterHoleGroups = 1;      // x, y, z
 const uint kCounterLayers = 4;
 const uint kCounterLayerGroups = 5;     // x, y, z
 const uint kCounterInvalidSamples = 8;
+const uint kCounterLayerPaths = 9;      // BLEND surfaces that had to be path traced
 const uint kCounterDiscards = 16;       // 4 per view
 const uint kDiscardFrustum = 0;
 const uint kDiscardId = 1;
@@ -205,7 +216,7 @@ struct FinishListParams {
     uint group_size;
 };
 
-// trace_holes.comp and trace_layers.comp: path traces the listed pixels.
+// trace_holes.comp and composite_layers.comp: the listed pixels. The latter reads set 1: kReproject….
 struct TraceListParams {
     CameraBuffer cameras;        // the source, then the views
     VisibilityBuffer visibility;
@@ -220,6 +231,8 @@ struct TraceListParams {
     uint max_bounces;
     uint flags;
     float max_indirect;
+    uint page_count;             // of the source; composite_layers.comp only
+    ReprojectSettings settings;  // composite_layers.comp only
 };
 
 // tone_map.comp: linear radiance to packed RGB8; one invocation makes four pixels (three words).
