@@ -20,9 +20,6 @@ double seconds(std::int64_t time_ns) {
 
 /// Time within the loop, from 0 to `duration_s`, both included.
 double loop_time_s(const Scene& scene, std::int64_t time_ns) {
-    if (scene.duration_s <= 0.0) {
-        return 0.0;
-    }
     const double phase = seconds(time_ns) - static_cast<double>(loop_index(scene, time_ns)) * scene.duration_s;
     return std::clamp(phase, 0.0, scene.duration_s);
 }
@@ -117,7 +114,7 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& fallback) {
 } // namespace
 
 std::int64_t loop_index(const Scene& scene, std::int64_t time_ns) {
-    if (scene.duration_s <= 0.0) {
+    if (scene.duration_s <= kLoopTolerance_s) { // also keeps the quotient below within 64 bits
         return 0;
     }
     const double loops = std::ceil((seconds(time_ns) - kLoopTolerance_s) / scene.duration_s) - 1.0;

@@ -46,7 +46,7 @@ Light read_light(const GltfDocument& document, const tinygltf::Light& source, co
     }
     for (int i = 0; i < 3; ++i) {
         const double intensity = static_cast<double>(light.intensity[i]) * source.intensity;
-        light.intensity[i] = checked_float(document, intensity, object + ": intensity", {});
+        light.intensity[i] = checked_float(document, intensity, object + ": intensity", kEmissionRange);
     }
     const float range = checked_float(document, source.range, object + ": range", {});
     if (range > 0.0F) { // tinygltf: 0 is absent

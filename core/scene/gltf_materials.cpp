@@ -50,7 +50,7 @@ private:
             checked_vector<glm::vec4>(document_, pbr.baseColorFactor, object + ": baseColorFactor", kUnitRange), 1.0F);
         material.metallic_factor = std::min(number(pbr.metallicFactor, "metallicFactor", kUnitRange), 1.0F);
         material.roughness_factor = std::min(number(pbr.roughnessFactor, "roughnessFactor", kUnitRange), 1.0F);
-        material.normal_scale = number(source.normalTexture.scale, "normalTexture scale", kAnyNumber);
+        material.normal_scale = number(source.normalTexture.scale, "normalTexture scale", kTextureRange);
         material.alpha_mode = alpha_mode(source.alphaMode, object);
         material.alpha_cutoff = number(source.alphaCutoff, "alphaCutoff", {});
         material.double_sided = source.doubleSided;
@@ -71,8 +71,8 @@ private:
             strength = number_member(*extension, "emissiveStrength", 1.0);
         }
         for (int i = 0; i < 3; ++i) {
-            material.emissive_factor[i] =
-                checked_float(document_, strength * static_cast<double>(factor[i]), object + ": emission", {});
+            material.emissive_factor[i] = checked_float(document_, strength * static_cast<double>(factor[i]),
+                                                        object + ": emission", kEmissionRange);
         }
     }
 
@@ -142,12 +142,12 @@ private:
     std::array<glm::vec3, 2> uv_matrix(const tinygltf::Value& transform, const std::string& object) const {
         const auto pair = [&](const char* key, const glm::vec2& fallback) {
             return transform.Has(key)
-                       ? checked_vector<glm::vec2>(document_, numbers_member(transform, key), object, kAnyNumber)
+                       ? checked_vector<glm::vec2>(document_, numbers_member(transform, key), object, kTextureRange)
                        : fallback;
         };
         const glm::vec2 offset = pair("offset", glm::vec2(0.0F));
         const glm::vec2 scale = pair("scale", glm::vec2(1.0F));
-        const float angle = checked_float(document_, number_member(transform, "rotation", 0.0), object, kAnyNumber);
+        const float angle = checked_float(document_, number_member(transform, "rotation", 0.0), object, kTextureRange);
         const float c = std::cos(angle);
         const float s = std::sin(angle);
         return {glm::vec3(c * scale.x, s * scale.y, offset.x), glm::vec3(-s * scale.x, c * scale.y, offset.y)};

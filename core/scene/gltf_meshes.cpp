@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/gltf_meshes.h"
 
+#include "core/scene/gltf_numbers.h"
 #include "core/scene/mesh_normals.h"
 
 #include <algorithm>
@@ -79,8 +80,8 @@ private:
         mesh.positions = read_attribute<3>(primitive, "POSITION", vertex_count, object);
         mesh.normals = read_attribute<3>(primitive, "NORMAL", vertex_count, object);
         mesh.tangents = read_attribute<4>(primitive, "TANGENT", vertex_count, object);
-        mesh.uv0 = read_attribute<2>(primitive, "TEXCOORD_0", vertex_count, object);
-        mesh.uv1 = read_attribute<2>(primitive, "TEXCOORD_1", vertex_count, object);
+        mesh.uv0 = read_coordinates(primitive, "TEXCOORD_0", vertex_count, object);
+        mesh.uv1 = read_coordinates(primitive, "TEXCOORD_1", vertex_count, object);
         mesh.colours = read_colours(primitive, vertex_count, object);
         mesh.triangles = read_triangles(primitive, vertex_count, object);
         if (mesh.normals.empty()) {
@@ -115,6 +116,15 @@ private:
             document_.refuse(object, std::string(attribute) + " has another length than POSITION");
         }
         return accessors_.read_vectors<N>(found->second, object + ": " + attribute);
+    }
+
+    std::vector<glm::vec2> read_coordinates(const tinygltf::Primitive& primitive, const char* attribute,
+                                            std::uint64_t vertex_count, const std::string& object) {
+        std::vector<glm::vec2> coordinates = read_attribute<2>(primitive, attribute, vertex_count, object);
+        for (glm::vec2& uv : coordinates) {
+            uv = glm::clamp(uv, static_cast<float>(kTextureRange.low), static_cast<float>(kTextureRange.high));
+        }
+        return coordinates;
     }
 
     std::vector<glm::vec4> read_colours(const tinygltf::Primitive& primitive, std::uint64_t vertex_count,

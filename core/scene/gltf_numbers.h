@@ -42,4 +42,9 @@ std::vector<double> numbers_member(const tinygltf::Value& object, const char* ke
 inline constexpr Range kAnyNumber{-static_cast<double>(std::numeric_limits<float>::max()),
                                   std::numeric_limits<float>::max()};
 
+/// Emitted light in any unit: sums and products of such numbers stay finite.
+inline constexpr Range kEmissionRange{0.0, 1e12};
+/// Texture coordinates and their transforms; beyond, single precision does not tell texels apart.
+inline constexpr Range kTextureRange{-1e6, 1e6};
+
 } // namespace fieldcast::scene

@@ -87,6 +87,9 @@ TEST(PoseScene, LoopsAndShowsTheLastKeyOfEachLoop) {
     EXPECT_EQ(loop_index(scene, kSecond_ns + 2000), 1);
     EXPECT_EQ(loop_index(scene, 3 * kSecond_ns), 2);
     EXPECT_EQ(loop_index(Scene{}, kSecond_ns), 0);
+    Scene short_lived; // the quotient would leave 64 bits
+    short_lived.duration_s = 1e-40;
+    EXPECT_EQ(loop_index(short_lived, std::numeric_limits<std::int64_t>::max()), 0);
 }
 
 TEST(PoseScene, ReachesTheLastOfThirtyFramesDespiteRounding) {
