@@ -5,7 +5,8 @@ target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/s
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
 
 fieldcast_test(server_session_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
@@ -14,11 +15,15 @@ fieldcast_test(server_flags_test LABELS quick
 fieldcast_test(server_clock_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
     DEPENDS fieldcast_server_channel)
-fieldcast_test(server_service_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
-            ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
-            ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
-    DEPENDS server_synthetic fieldcast_server_service)
+# Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
+# like a race. What the server's own threads share is in server_session_test.
+if(NOT FIELDCAST_SANITIZE MATCHES thread)
+    fieldcast_test(server_service_test LABELS quick
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
+        DEPENDS server_synthetic fieldcast_server_service)
+endif()
 
 # Renders; the tests that need a device skip without one.
 fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
