@@ -58,7 +58,9 @@ std::vector<glm::vec4> make_ggx_albedo() {
     table.reserve(static_cast<std::size_t>(size) * size);
     for (std::uint32_t row = 0; row < size; ++row) {
         for (std::uint32_t col = 0; col < size; ++col) {
-            table.push_back(integrate((static_cast<float>(col) + 0.5F) / size, (static_cast<float>(row) + 0.5F) / size));
+            const float cos_view = (static_cast<float>(col) + 0.5F) / size;
+            const float roughness = static_cast<float>(row) / (size - 1);
+            table.push_back(integrate(cos_view, roughness));
         }
     }
     return table;

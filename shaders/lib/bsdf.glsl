@@ -28,7 +28,7 @@ mat3 frame_of(vec3 n) {
 // Directional albedo of single-scattering GGX as F0·x + y.
 vec2 ggx_albedo(float cos_view, float roughness) {
     float size = float(kGgxAlbedoSize);
-    vec2 at = clamp(vec2(cos_view, roughness) * size - 0.5, 0.0, size - 1.0);
+    vec2 at = clamp(vec2(cos_view * size - 0.5, roughness * (size - 1.0)), 0.0, size - 1.0);
     ivec2 low = ivec2(min(at, size - 2.0));
     vec2 f = at - vec2(low);
     int base = low.y * int(kGgxAlbedoSize) + low.x;

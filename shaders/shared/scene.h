@@ -26,7 +26,7 @@ const uint kBindTextures = 13;        // sampler2DArray[kTextureArrays]
 const uint kBindAcceleration = 14;    // top level; only in ray query kernels
 const uint kBindGgxAlbedo = 15;       // RGBA32F: directional albedo of GGX, kGgxAlbedoSize² of (A, B): E = F0·A + B
 
-const uint kGgxAlbedoSize = 32; // columns: n·v, rows: roughness; centres at (i + 0.5) / size
+const uint kGgxAlbedoSize = 32; // columns: n·v at (i + 0.5) / size, rows: roughness at i / (size − 1)
 const uint kTextureArrays = 8;  // size classes × {sRGB, linear}; unused ones hold one white texel
 
 // Specialisation constants of kernels that look at surfaces; those of the traversal are in shared/bvh.h.
