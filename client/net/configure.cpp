@@ -45,28 +45,48 @@ std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Wish
     return std::nullopt;
 }
 
+/// Room for a plane, and for the layers that frames may stack below the illumination.
+struct PlaneRoom {
+    std::uint32_t width_px = 0;
+    std::uint32_t height_px = 0;
+    std::uint64_t bytes = 0;
+};
+
+std::optional<PlaneRoom> plane_room(const v1::PlaneHeader& plane) {
+    const auto semantic = wire::from_proto(plane.semantic());
+    const auto format = wire::from_proto(plane.format());
+    const bool has_size = plane.width_px() > 0 && plane.width_px() <= kMaxPlaneSide && plane.height_px() > 0 &&
+                          plane.height_px() <= kMaxPlaneSide;
+    if (!semantic || !format || !has_size) {
+        return std::nullopt;
+    }
+    const bool has_layers = *semantic == PlaneSemantic::kDiffuse || *semantic == PlaneSemantic::kSpecular;
+    const std::uint32_t height_px = plane.height_px() * (has_layers ? 1 + kMaxLayers : 1);
+    return PlaneRoom{plane.width_px(), height_px, plane_bytes(*format, plane.width_px(), height_px)};
+}
+
 /// Sizes in Configured are upper bounds; the assembler checks frames against what follows from them.
 Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wire::ViewSet& set, Mode mode) {
     wire::FrameLimits limits;
     limits.max_width_px = set.width_px;
     limits.max_height_px = set.height_px;
-    std::uint64_t frame_bytes = 3ULL * set.width_px * set.height_px * set.grid.view_count();
+    limits.max_frame_bytes = plane_bytes(PlaneFormat::kRgb8, set.width_px, set.height_px) * set.grid.view_count();
     if (mode == Mode::kScene) {
-        frame_bytes = 0;
+        limits.max_frame_bytes = 0;
         for (const v1::PlaneHeader& plane : message.planes()) {
-            if (plane.width_px() == 0 || plane.width_px() > kMaxPlaneSide || plane.height_px() == 0 ||
-                plane.height_px() > kMaxPlaneSide) {
-                return decode_error("Configured: a plane has a size outside 1 … 16384");
+            const std::optional<PlaneRoom> room = plane_room(plane);
+            if (!room) {
+                return decode_error("Configured: a plane of unknown meaning or format, or a size outside 1 … 16384");
             }
-            limits.max_width_px = std::max(limits.max_width_px, plane.width_px());
-            limits.max_height_px = std::max(limits.max_height_px, plane.height_px());
-            frame_bytes += 4ULL * plane.width_px() * plane.height_px();
+            limits.max_width_px = std::max(limits.max_width_px, room->width_px);
+            limits.max_height_px = std::max(limits.max_height_px, room->height_px);
+            limits.max_frame_bytes += room->bytes;
         }
     }
-    if (frame_bytes > kMaxFrameBytes) {
-        return decode_error("Configured: frames of " + std::to_string(frame_bytes >> 20) + " MiB, at most 1024 MiB");
+    if (limits.max_frame_bytes > kMaxFrameBytes) {
+        return decode_error("Configured: frames of " + std::to_string(limits.max_frame_bytes >> 20) +
+                            " MiB, at most 1024 MiB");
     }
-    limits.max_frame_bytes = frame_bytes;
     return limits;
 }
 
