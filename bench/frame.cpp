@@ -37,9 +37,10 @@ struct FrameOptions {
 
 /// What one frame took and did.
 struct FrameSample {
-    std::vector<StageTime> stages;
+    std::vector<StageTime> stages{};
     double source_paths = 0.0; ///< paths that start on a surface
     double hole_paths = 0.0;
+    double hole_pixels = 0.0;
     double synthesised_pixels = 0.0; ///< of all views but the source's own
 };
 
@@ -101,12 +102,13 @@ public:
         const render::ViewRequest request{grid_.geometry, vertical_fov(header_.source), size_.width_px, size_.height_px,
                                           lattice_positions(grid_)};
         views_ = grid_renderer_.render(planes, request);
-        FrameSample sample{views_.header.render_times, 0.0, 0.0, 0.0};
+        FrameSample sample{.stages = views_.header.render_times};
         const double spp = header_.settings.samples_per_pixel;
         sample.source_paths = static_cast<double>(surface_pixels(planes)) * spp;
         for (const View& view : views_.views) {
-            sample.hole_paths += view.discards.total() * spp;
+            sample.hole_pixels += view.discards.total();
         }
+        sample.hole_paths = sample.hole_pixels * spp;
         sample.synthesised_pixels = static_cast<double>(grid_.view_count() - 1) * size_.width_px * size_.height_px;
         return sample;
     }
@@ -186,7 +188,7 @@ nlohmann::ordered_json summarise(const gpu::Device& device, const FrameOptions& 
         json["stages_ms"][time.stage] = of([&](const FrameSample& s) { return stage_ms(s, time.stage); });
     }
     json["frame_ms"] = of(frame_ms);
-    json["hole_share"] = of([](const FrameSample& s) { return s.hole_paths / std::max(1.0, s.synthesised_pixels); });
+    json["hole_share"] = of([](const FrameSample& s) { return s.hole_pixels / std::max(1.0, s.synthesised_pixels); });
     json["ns_per_source_path"] =
         of([&](const FrameSample& s) { return ns_per(stage_ms(s, "source_trace"), s.source_paths); });
     json["ns_per_hole_path"] = of([&](const FrameSample& s) { return ns_per(stage_ms(s, "holes"), s.hole_paths); });
@@ -220,7 +222,8 @@ void run_frame(const FrameOptions& options) {
               << options.scene << ", " << options.grid << " views of " << options.size << '\n';
     const GuardBandChoice& guard = run.guard_band();
     std::cout << "guard band: left " << guard.band.left_px << ", right " << guard.band.right_px << ", top "
-              << guard.band.top_px << ", bottom " << guard.band.bottom_px << " pixels\n";
+              << guard.band.top_px << ", bottom " << guard.band.bottom_px << " pixels (" << std::llround(100.0 * guard.extra_share) << " % more source pixels, "
+              << std::llround(100.0 * guard.removed_share) << " % of the out-of-frustum pixels removed)\n";
     std::vector<FrameSample> samples;
     for (std::uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame) {
         const FrameSample sample = run.render(frame);

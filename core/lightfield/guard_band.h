@@ -15,7 +15,7 @@ struct GuardBandChoice {
 };
 
 /// Smallest band that removes ≥ `target_share` of the out-of-frustum pixels of `largest`, capped at `max_extra_share`
-/// more source pixels (conventions, "Guard band").
+/// more source pixels (docs/lightfield.md, guard band).
 /// `depth_m` is the depth image of a camera already widened by `widest` (row-major, size of that camera; infinity: sky)
 /// so that the disparity of points just outside the source image is known.
 GuardBandChoice choose_guard_band(const Camera& source, const GuardBand& widest, std::span<const float> depth_m,

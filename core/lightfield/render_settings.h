@@ -9,7 +9,7 @@ enum class Denoiser : std::uint8_t { kNone = 0, kSvgf = 1 };
 enum class ToneMap : std::uint8_t { kClampSrgb = 0, kAces = 1 };
 
 /// Thresholds of the spatial reprojection test, in units of the pixel footprint ρ = 2 z tan(fovy/2) / H
-/// (design: backward test). Scale-free, so no constants per scene.
+/// (docs/lightfield.md). Scale-free, so no constants per scene.
 struct ReprojectionThresholds {
     float plane_footprints = 1.5F;      ///< |n·(P_s − P_t)| ≤ plane_footprints · ρ + 1e-4 z
     float tangential_footprints = 2.5F; ///< |P_s − P_t| ≤ tangential_footprints · ρ / |n·v|
@@ -24,7 +24,7 @@ struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
-    float indirect_clamp = 20.0F; ///< luminance of one indirect sample, × frame mean luminance; 0: unbiased
+    float indirect_clamp = 20.0F; ///< luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased
     Denoiser denoiser = Denoiser::kSvgf;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2

@@ -60,7 +60,7 @@ LatticePosition lattice_position(const ViewGrid& grid, std::uint32_t row, std::u
 std::vector<LatticePosition> lattice_positions(const ViewGrid& grid);
 
 /// Camera of a view. `source` is the source camera without guard band; the view has the given size, and the
-/// vertical field of view `fovy_rad` over its height. Implements x_source = x_target + Δcol·d (conventions).
+/// vertical field of view `fovy_rad` over its height. Implements x_source = x_target + Δcol·d (docs/lightfield.md).
 Camera view_camera(const Camera& source, const LatticeGeometry& geometry, LatticePosition position, float fovy_rad,
                    std::uint32_t width_px, std::uint32_t height_px);
 

@@ -8,12 +8,12 @@ namespace fieldcast::render {
 
 /// What a channel decides once, when it starts.
 
-/// Guard band for the scene as posed now (conventions, "Guard band"): traces the depth of a widened source at reduced
+/// Guard band for the scene as posed now (docs/lightfield.md): traces the depth of a widened source at reduced
 /// size and asks choose_guard_band. The band is in pixels of `source`.
 GuardBandChoice measure_guard_band(const gpu::Device& device, const scene::GpuScene& scene, const Camera& source,
                                    const ViewGrid& largest);
 
-/// Exposure that brings the log-average luminance of the source view to 0.18 (conventions, "auto").
+/// Exposure that brings the log-average luminance of the source view to 0.18.
 float auto_exposure(GridRenderer& grid_renderer, const SourcePlanes& source);
 
 /// The rigid pose of `camera` in the scene's current pose.

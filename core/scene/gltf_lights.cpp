@@ -9,7 +9,7 @@ namespace fieldcast::scene {
 
 namespace {
 
-constexpr double kSunRadiusDeg = 0.2665; // conventions: every directional light is the sun unless it says otherwise
+constexpr double kSunRadiusDeg = 0.2665; // glTF gives none: every directional light is the sun unless it says otherwise
 constexpr const char* kRadiusMember = "angular_radius_deg";
 
 LightType light_type(const GltfDocument& document, const std::string& type, const std::string& object) {

@@ -12,8 +12,8 @@ namespace fieldcast::scene {
 /// How rays are traced: our own BVH in texel buffers, or VK_KHR_ray_query.
 enum class Traversal : std::uint8_t { kBvh, kRayQuery };
 
-/// Reads "bvh" | "rayquery"; "auto" takes the BVH on CPU devices and without ray query; on other devices both are
-/// timed once and the faster one is kept by device UUID and driver version. Throws UserError if it cannot be had.
+/// Reads "bvh" | "rayquery" | "auto": ray query where the device has it and is not a CPU (docs/decisions/0007). Throws
+/// UserError if what was asked for cannot be had.
 Traversal choose_traversal(const gpu::Device& device, const std::string& wish);
 
 /// A scene on a Vulkan device: descriptor set 0 of every kernel that looks at surfaces (shaders/shared/scene.h).

@@ -86,7 +86,7 @@ struct Node {
     bool is_animated = false;        ///< this node or an ancestor has an animation channel
 };
 
-/// A mesh placed in the world by a node. The index into Scene::instances is the instance of conventions.md.
+/// A mesh placed in the world by a node. The index into Scene::instances is the instance of visibility and wire ids.
 struct Instance {
     std::uint32_t node = 0;
     std::uint32_t mesh = 0;

@@ -6,7 +6,7 @@
 #include "lib/path.glsl"
 #include "lib/views.glsl"
 
-// Seed of a pixel: never a position in a compacted list (conventions, "Seed of a hole").
+// Seed of a pixel: never a position in a compacted list.
 uint pixel_seed(uint view_seed, uint x, uint y) {
     return hash_combine(view_seed, x | (y << 16));
 }
