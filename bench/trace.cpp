@@ -2,16 +2,15 @@
 // `fieldcast-bench trace`: the same rays through our kernels and through Embree, repetitions interleaved, medians.
 #include "bench/commands.h"
 #include "bench/device_tracer.h"
+#include "bench/measure.h"
 #include "bench/rays.h"
 #include "core/base/error.h"
 #include "core/scene/gltf_loader.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 namespace fieldcast::bench {
@@ -28,22 +27,6 @@ struct TraceOptions {
     std::uint32_t threads = std::max(1U, std::thread::hardware_concurrency());
     double time_s = 0.0;
 };
-
-struct Size {
-    std::uint32_t width_px = 0;
-    std::uint32_t height_px = 0;
-};
-
-Size parse_size(const std::string& text) {
-    Size size;
-    char cross = 0;
-    std::istringstream in(text);
-    if (!(in >> size.width_px >> cross >> size.height_px) || cross != 'x' || !in.eof() || size.width_px == 0 ||
-        size.height_px == 0 || size.width_px > 16384 || size.height_px > 16384) {
-        throw UserError("--size " + text + ": expected WIDTHxHEIGHT, each 1 … 16384");
-    }
-    return size;
-}
 
 /// One kind of rays, and what is aimed at.
 struct RayKind {
@@ -65,12 +48,6 @@ struct KindResult {
     std::vector<double> mrays_per_s; ///< one per contender
     double agreement = 0.0;          ///< part of the rays for which the first contender and Embree meet the same
 };
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 double agreement(const DeviceRays& rays, std::span<const shared::TraceHit> hits, std::span<const float> blocked,
                  bool any) {
@@ -161,16 +138,8 @@ nlohmann::ordered_json to_json(const std::string& device, std::span<const RayKin
     return json;
 }
 
-void write_json(const std::string& file, const nlohmann::ordered_json& json) {
-    std::ofstream out(file);
-    out << json.dump(2) << '\n';
-    if (!out.flush()) {
-        throw UserError(file + ": cannot be written");
-    }
-}
-
 void run_trace(const TraceOptions& options) {
-    const Size size = parse_size(options.size);
+    const Size size = parse_size("--size", options.size);
     const gpu::Device device({.name_contains = options.device});
     const scene::Traversal traversal = scene::choose_traversal(device, options.traversal);
     const scene::Scene scene = scene::load_scene(options.scene);
