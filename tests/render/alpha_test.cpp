@@ -28,7 +28,8 @@ SceneBuilder veils() {
 constexpr double kThrough = 0.75 * 0.5;
 
 TEST_F(AlphaTest, BlendSurfacesDimWhatIsBehind) {
-    const Average mean = average(path_trace(veils().scene(), look_at({}, {0, 0, -1}, 0.5F, 16, 16), {.samples = 16, .renders = 8}));
+    const Average mean =
+        average(path_trace(veils().scene(), look_at({}, {0, 0, -1}, 0.5F, 16, 16), {.samples = 16, .renders = 8}));
     EXPECT_NEAR(mean.mean.y, kThrough, 4.5 * mean.standard_error.y);
     EXPECT_LT(mean.standard_error.y, 0.005);
 }
@@ -39,7 +40,8 @@ TEST_F(AlphaTest, EverySegmentOfAPathMeetsBlendSurfacesAnew) {
     builder.add(rectangle({0, 0, -3}, {5, 0, 0}, {0, 5, 0}), builder.add_material(metal(glm::vec3(1.0F), 0.0F)));
     const Camera camera = look_at({}, {0, 0, -1}, 0.2F, 16, 16);
     for (const bool nee : {true, false}) {
-        const Average mean = average(path_trace(builder.scene(), camera, {.samples = 32, .renders = 8, .next_event_estimation = nee}));
+        const Average mean =
+            average(path_trace(builder.scene(), camera, {.samples = 32, .renders = 8, .next_event_estimation = nee}));
         // 0.002: the albedo table at n·v ≈ 1
         EXPECT_NEAR(mean.mean.y, kThrough * kThrough, 4.5 * mean.standard_error.y + 0.002) << nee;
         EXPECT_LT(mean.standard_error.y, 0.005) << nee;
@@ -56,7 +58,7 @@ TEST_F(AlphaTest, ShadowRaysAreDimmedByTheProduct) {
     const Camera camera = look_at({0, 0, -2.5F}, {0, 0, -3}, 0.02F, 2, 2); // between veils and wall
     const Estimate image = path_trace(builder.scene(), camera, {.samples = 1, .renders = 1, .max_bounces = 1});
     const double expected = kThrough * 0.5 / glm::pi<double>() / 9.0; // intensity 1 at 3 m
-    EXPECT_NEAR(image.mean[0].y, expected, 1e-3 * expected); // the pixel is not quite at the centre
+    EXPECT_NEAR(image.mean[0].y, expected, 1e-3 * expected);          // the pixel is not quite at the centre
 }
 
 TEST_F(AlphaTest, ViewsCompositeTheSameTransmittance) {
@@ -101,7 +103,9 @@ TEST_F(AlphaTest, LightSamplingKnowsWhatIsCutOut) {
         builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
         const Camera camera = look_at({0, 0.8F, 0.8F}, {0, 0, 0}, 0.5F, 16, 16);
         const auto render = [&](bool nee) {
-            return average(path_trace(builder.scene(), camera, {.samples = nee ? 32U : 128U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee}));
+            return average(path_trace(
+                builder.scene(), camera,
+                {.samples = nee ? 32U : 128U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee}));
         };
         const Average with = render(true);
         const Average without = render(false);

@@ -53,7 +53,8 @@ TEST_F(EnvironmentLightTest, LooksUpAndDownWithoutInvalidValues) {
     builder.environment() = one_bright_texel(0, 0, 0.0F);
     builder.environment().pixels.assign(std::size_t{kWidth} * kHeight, glm::vec3(0.25F));
     for (const float up : {1.0F, -1.0F}) { // the middle pixel looks along the pole exactly
-        const Estimate image = path_trace(builder.scene(), look_at({0, 0, 0}, {0, up, 0}, 0.5F, 5, 5), {.samples = 1, .renders = 1});
+        const Estimate image =
+            path_trace(builder.scene(), look_at({0, 0, 0}, {0, up, 0}, 0.5F, 5, 5), {.samples = 1, .renders = 1});
         for (const glm::dvec3& pixel : image.mean) {
             EXPECT_NEAR(pixel.y, 0.25, 1e-3);
         }
@@ -61,8 +62,8 @@ TEST_F(EnvironmentLightTest, LooksUpAndDownWithoutInvalidValues) {
 }
 
 TEST_F(EnvironmentLightTest, SamplingFindsTheLightWhereLookUpsSeeIt) {
-    // Irradiance of one bilinear texel: its radiance × the solid angle of one texel (the filter spreads it, the integral
-    // over u is exact and over v off by the variation of sin θ, 0.2 %).
+    // Irradiance of one bilinear texel: its radiance × the solid angle of one texel (the filter spreads it, the
+    // integral over u is exact and over v off by the variation of sin θ, 0.2 %).
     const glm::uvec2 texel(40, 6);
     SceneBuilder builder;
     builder.environment() = one_bright_texel(texel.x, texel.y, 100.0F);
@@ -73,9 +74,9 @@ TEST_F(EnvironmentLightTest, SamplingFindsTheLightWhereLookUpsSeeIt) {
     const double expected = 0.5 / glm::pi<double>() * 100.0 * solid_angle * static_cast<double>(direction.y);
     const Camera camera = look_at({0, 2, 0}, {0, 0, 0}, 0.5F, 16, 16);
     for (const bool nee : {true, false}) {
-        const Average mean = average(path_trace(
-            builder.scene(), camera,
-            {.samples = nee ? 64U : 512U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee}));
+        const Average mean = average(
+            path_trace(builder.scene(), camera,
+                       {.samples = nee ? 64U : 512U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee}));
         EXPECT_NEAR(mean.mean.y, expected, 4.5 * mean.standard_error.y + 0.005 * expected) << nee;
         EXPECT_LT(mean.standard_error.y, 0.02 * expected) << nee;
     }
@@ -102,7 +103,7 @@ TEST_F(EnvironmentLightTest, LargeMapsAreSampledAsFinelyAsSmallOnes) {
     const Average large = render(2048);
     const double error = std::hypot(small.standard_error.y, large.standard_error.y);
     EXPECT_NEAR(large.mean.y, small.mean.y, 4.5 * error);
-    EXPECT_LT(error, 0.003); // of a mean of 1.75
+    EXPECT_LT(error, 0.003);                    // of a mean of 1.75
     EXPECT_NEAR(small.mean.y, 0.5 * 3.5, 0.01); // albedo × mean radiance; the seams of the halves are a texel wide
 }
 

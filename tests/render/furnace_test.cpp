@@ -25,7 +25,8 @@ scene::Scene furnace(const std::vector<scene::Material>& rows) {
             scene::Material material = rows[row];
             material.roughness_factor = static_cast<float>(col) / (kRoughnesses - 1);
             builder.add(ball, builder.add_material(material),
-                        at({static_cast<float>(col) - 2.5F, 0.5F * static_cast<float>(rows.size() - 1) - static_cast<float>(row), 0}));
+                        at({static_cast<float>(col) - 2.5F,
+                            0.5F * static_cast<float>(rows.size() - 1) - static_cast<float>(row), 0}));
         }
     }
     return builder.scene();
@@ -47,9 +48,9 @@ TEST_F(FurnaceTest, WhiteSpheresVanishInAWhiteSky) {
         for (std::uint32_t row = 0; row < height; ++row) {
             for (std::uint32_t col = 0; col < kRoughnesses; ++col) {
                 const Average cell = average(image, col * kCell, row * kCell, kCell, kCell);
-                // Bounds of the issue. Below 1: light scattered below the horizon of the geometric normal, and glass that
-                // still holds light after eight bounces. Above: the interpolation of the albedo table. Three standard
-                // errors for the noise, which is of that size for rough glass.
+                // Bounds of the issue. Below 1: light scattered below the horizon of the geometric normal, and glass
+                // that still holds light after eight bounces. Above: the interpolation of the albedo table. Three
+                // standard errors for the noise, which is of that size for rough glass.
                 const double noise = 3.0 * cell.standard_error.y;
                 EXPECT_GE(cell.mean.y, 0.97 - noise) << "row " << row << " roughness " << 0.2 * col << " nee " << nee;
                 EXPECT_LE(cell.mean.y, 1.003 + noise) << "row " << row << " roughness " << 0.2 * col << " nee " << nee;
@@ -93,8 +94,8 @@ TEST_F(SphereInteriorTest, UniformEmissionAddsUpAsAGeometricSeries) {
     const scene::Scene scene = ball(material).scene();
     const double expected = 1.0 - std::pow(0.5, 9); // sum of 0.5 · 0.5^k, k = 0 … 8 bounces
     for (const bool nee : {true, false}) {
-        const Average mean = average(path_trace(scene, inside_camera(),
-                                                {.samples = 32, .renders = 6, .next_event_estimation = nee}));
+        const Average mean =
+            average(path_trace(scene, inside_camera(), {.samples = 32, .renders = 6, .next_event_estimation = nee}));
         EXPECT_NEAR(mean.mean.y, expected, 4.5 * mean.standard_error.y + 1e-4) << nee; // 4.5 σ: 1 in 150 000
         EXPECT_LT(mean.standard_error.y, 0.005) << nee;
     }

@@ -51,7 +51,8 @@ TEST(LightTables, ProbabilitiesOfKindsAddUpToOne) {
     for (const float sky : {0.0F, 1.0F}) {
         scene.environment.constant = glm::vec3(sky);
         const LightTables tables = make_light_tables(scene, pose, 1.0F);
-        EXPECT_NEAR(tables.probability_emitter + tables.probability_environment + tables.probability_light, 1.0F, 1e-6F);
+        EXPECT_NEAR(tables.probability_emitter + tables.probability_environment + tables.probability_light, 1.0F,
+                    1e-6F);
         EXPECT_EQ(tables.probability_environment > 0.0F, sky > 0.0F);
         EXPECT_GT(tables.probability_emitter, 0.0F);
         EXPECT_GT(tables.probability_light, 0.0F);

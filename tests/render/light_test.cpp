@@ -74,7 +74,8 @@ TEST_F(LightTest, RectangleLightGivesLambertsIrradiance) {
         const glm::vec3 eye = above_m > 0.5F ? glm::vec3(0, kFloor + 0.8F, 1.0F) : glm::vec3(0, kFloor + 0.04F, 0.6F);
         const Camera camera = look_at(eye, {0, kFloor, 0}, above_m > 0.5F ? 0.7F : 0.05F, 24, 16);
         for (const bool nee : {true, false}) {
-            const PathTracing options{.samples = nee ? 32U : 128U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee};
+            const PathTracing options{
+                .samples = nee ? 32U : 128U, .renders = 8, .max_bounces = 1, .next_event_estimation = nee};
             SCOPED_TRACE(testing::Message() << above_m << " m, next event estimation " << nee);
             expect_rectangle_light(path_trace(builder.scene(), camera, options), camera, above_m);
         }
@@ -86,7 +87,8 @@ TEST_F(LightTest, EmissionIsOneSidedUnlessTheMaterialIsDoubleSided) {
         SceneBuilder builder = floor_only();
         scene::Material material = emitter(glm::vec3(10.0F));
         material.double_sided = both;
-        builder.add(rectangle({0, kFloor + 1.0F, 0}, {0.3F, 0, 0}, {0, 0, -0.2F}), builder.add_material(material)); // up
+        builder.add(rectangle({0, kFloor + 1.0F, 0}, {0.3F, 0, 0}, {0, 0, -0.2F}),
+                    builder.add_material(material)); // up
         const Camera camera = look_at({0, kFloor + 0.8F, 1.0F}, {0, kFloor, 0}, 0.7F, 24, 16);
         const Estimate image = path_trace(builder.scene(), camera, {.samples = 32, .renders = 8, .max_bounces = 1});
         if (both) {
@@ -135,10 +137,13 @@ TEST_F(PunctualTest, PointLightWithRange) {
     light.intensity = glm::vec3(5.0F);
     light.range_m = 2.0F;
     // KHR_lights_punctual: max(min(1 − (d / range)⁴, 1), 0) / d². The window amplifies rounding where it is near 0.
-    expect(light, at(glm::vec3(lamp_)), [&](const glm::dvec3& p) {
-        const double ratio = glm::length(lamp_ - p) / 2.0;
-        return 5.0 * inverse_square(lamp_ - p) * std::max(0.0, 1.0 - std::pow(ratio, 4.0));
-    }, 1e-3);
+    expect(
+        light, at(glm::vec3(lamp_)),
+        [&](const glm::dvec3& p) {
+            const double ratio = glm::length(lamp_ - p) / 2.0;
+            return 5.0 * inverse_square(lamp_ - p) * std::max(0.0, 1.0 - std::pow(ratio, 4.0));
+        },
+        1e-3);
 }
 
 TEST_F(PunctualTest, SpotLight) {
@@ -149,12 +154,15 @@ TEST_F(PunctualTest, SpotLight) {
     light.outer_cone_rad = 0.7F;
     const glm::dvec3 axis = glm::normalize(glm::dvec3(-0.4, -1.0, 0.3));
     // KHR_lights_punctual: saturate(cos θ · scale + offset)², 1 at the inner and 0 at the outer cone.
-    expect(light, facing(glm::vec3(lamp_), glm::vec3(axis)), [&](const glm::dvec3& p) {
-        const double cos_angle = glm::dot(glm::normalize(p - lamp_), axis);
-        const double cos_outer = std::cos(0.7);
-        const double inside = glm::clamp((cos_angle - cos_outer) / (std::cos(0.3) - cos_outer), 0.0, 1.0);
-        return 5.0 * inverse_square(lamp_ - p) * inside * inside;
-    }, 1e-3);
+    expect(
+        light, facing(glm::vec3(lamp_), glm::vec3(axis)),
+        [&](const glm::dvec3& p) {
+            const double cos_angle = glm::dot(glm::normalize(p - lamp_), axis);
+            const double cos_outer = std::cos(0.7);
+            const double inside = glm::clamp((cos_angle - cos_outer) / (std::cos(0.3) - cos_outer), 0.0, 1.0);
+            return 5.0 * inverse_square(lamp_ - p) * inside * inside;
+        },
+        1e-3);
 }
 
 TEST_F(PunctualTest, DirectionalLight) {
@@ -164,15 +172,17 @@ TEST_F(PunctualTest, DirectionalLight) {
         light.intensity = glm::vec3(2.0F);
         light.angular_radius_rad = radius;
         // A disc averages cos θ over its directions, 1 − r²/4 of the centre's; four samples do not average it fully.
-        expect(light, facing({}, glm::vec3(towards)), [&](const glm::dvec3&) { return 2.0 * -towards.y; },
-               radius > 0.01F ? 0.05 : 2e-3);
+        expect(
+            light, facing({}, glm::vec3(towards)), [&](const glm::dvec3&) { return 2.0 * -towards.y; },
+            radius > 0.01F ? 0.05 : 2e-3);
     }
 }
 
 TEST_F(LightTest, EmissiveStrengthCountsBeyondOne) {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, -2}, {1, 0, 0}, {0, 1, 0}), builder.add_material(emitter({7.5F, 20.0F, 0.25F})));
-    const Estimate image = path_trace(builder.scene(), look_at({0, 0, 0}, {0, 0, -1}, 0.5F, 4, 4), {.samples = 1, .renders = 1});
+    const Estimate image =
+        path_trace(builder.scene(), look_at({0, 0, 0}, {0, 0, -1}, 0.5F, 4, 4), {.samples = 1, .renders = 1});
     EXPECT_EQ(image.mean[5], glm::dvec3(7.5, 20.0, 0.25));
 }
 

@@ -22,7 +22,8 @@ scene::Scene mixed_scene() {
     }
     scene::Material panel = emitter({2.0F, 1.5F, 1.0F});
     panel.double_sided = true;
-    panel.emissive.texture = builder.add_texture(2, {255, 200, 150, 255, 120, 120, 120, 255, 90, 160, 255, 255, 255, 255, 255, 255});
+    panel.emissive.texture =
+        builder.add_texture(2, {255, 200, 150, 255, 120, 120, 120, 255, 90, 160, 255, 255, 255, 255, 255, 255});
     scene::Material plastic = diffuse({0.2F, 0.4F, 0.7F});
     plastic.ior = 1.5F;
     plastic.roughness_factor = 0.3F;
@@ -32,8 +33,10 @@ scene::Scene mixed_scene() {
     pane.transmission_factor = 0.8F;
     builder.add(rectangle({0, -1, 0}, {3, 0, 0}, {0, 0, -3}), builder.add_material(diffuse(glm::vec3(0.6F))));
     builder.add(rectangle({-1.6F, 0, -0.5F}, {0, 0, 1}, {0, 0.8F, 0}), builder.add_material(panel));
-    builder.add(sphere(0.4F, 32, Shading::kSmooth), builder.add_material(emitter(glm::vec3(1.5F))), at({1.5F, 0.6F, -1}));
-    builder.add(sphere(0.5F, 32, Shading::kSmooth), builder.add_material(metal({0.9F, 0.7F, 0.4F}, 0.35F)), at({-0.5F, -0.5F, 0}));
+    builder.add(sphere(0.4F, 32, Shading::kSmooth), builder.add_material(emitter(glm::vec3(1.5F))),
+                at({1.5F, 0.6F, -1}));
+    builder.add(sphere(0.5F, 32, Shading::kSmooth), builder.add_material(metal({0.9F, 0.7F, 0.4F}, 0.35F)),
+                at({-0.5F, -0.5F, 0}));
     builder.add(sphere(0.5F, 32, Shading::kSmooth), builder.add_material(plastic), at({0.7F, -0.5F, 0.2F}));
     builder.add(rectangle({0.1F, -0.4F, 0.9F}, {0.4F, 0, 0}, {0, 0.5F, 0}), builder.add_material(pane));
     return builder.scene();
@@ -45,13 +48,15 @@ TEST_F(NextEventEstimationTest, DoesNotChangeTheMean) {
     const scene::Scene scene = mixed_scene();
     const Camera camera = look_at({0, 0.6F, 4}, {0, -0.3F, 0}, 0.7F, 32, 24);
     const auto render = [&](bool nee) {
-        return average(path_trace(scene, camera, {.samples = nee ? 64U : 128U, .renders = 8, .next_event_estimation = nee}));
+        return average(
+            path_trace(scene, camera, {.samples = nee ? 64U : 128U, .renders = 8, .next_event_estimation = nee}));
     };
     const Average with = render(true);
     const Average without = render(false);
     for (int c = 0; c < 3; ++c) {
         const double error = std::hypot(with.standard_error[c], without.standard_error[c]);
-        RecordProperty("difference_" + std::to_string(c), std::to_string((with.mean[c] - without.mean[c]) / without.mean[c]));
+        RecordProperty("difference_" + std::to_string(c),
+                       std::to_string((with.mean[c] - without.mean[c]) / without.mean[c]));
         EXPECT_LE(4.0 * error, 0.01 * without.mean[c]) << "1 % must be at least four standard errors";
         EXPECT_NEAR(with.mean[c], without.mean[c], 0.01 * without.mean[c]) << c;
     }
@@ -81,7 +86,8 @@ TEST_F(NextEventEstimationTest, SamplesOfAPixelAreWellDistributed) {
     builder.add(rectangle({0, 2, 0}, {0.7F, 0, 0}, {0, 0, 0.7F}), builder.add_material(emitter(glm::vec3(5.0F))));
     const Camera camera = look_at({0, 1.5F, 0.5F}, {0, 0, 0}, 0.5F, 16, 16);
     const auto variance = [&](std::uint32_t samples) { // of one render
-        const Estimate image = path_trace(builder.scene(), camera, {.samples = samples, .renders = 8, .max_bounces = 1});
+        const Estimate image =
+            path_trace(builder.scene(), camera, {.samples = samples, .renders = 8, .max_bounces = 1});
         double sum = 0.0;
         for (const glm::dvec3& v : image.variance) {
             sum += 8.0 * v.y;

@@ -32,7 +32,8 @@ Estimate RenderTest::path_trace(const scene::Scene& scene, const Camera& camera,
     settings.next_event_estimation = options.next_event_estimation;
     settings.indirect_clamp = 0.0F;
     const std::size_t count = static_cast<std::size_t>(camera.width_px) * camera.height_px;
-    Estimate estimate{camera.width_px, camera.height_px, std::vector<glm::dvec3>(count), std::vector<glm::dvec3>(count)};
+    Estimate estimate{camera.width_px, camera.height_px, std::vector<glm::dvec3>(count),
+                      std::vector<glm::dvec3>(count)};
     for (std::uint32_t render = 0; render < options.renders; ++render) {
         renderer.start(camera);
         renderer.accumulate(settings, 1000 + render);

@@ -25,7 +25,8 @@ struct Average {
     glm::dvec3 standard_error{0.0};
 };
 
-Average average(const Estimate& estimate, std::uint32_t x0, std::uint32_t y0, std::uint32_t width, std::uint32_t height);
+Average average(const Estimate& estimate, std::uint32_t x0, std::uint32_t y0, std::uint32_t width,
+                std::uint32_t height);
 Average average(const Estimate& estimate);
 
 struct PathTracing {

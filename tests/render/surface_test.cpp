@@ -31,7 +31,8 @@ protected:
 
 TEST_F(SurfaceTest, NormalsOfScaledAndMirroredInstancesAreThoseOfTheEllipsoid) {
     const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), 0.7F, glm::normalize(glm::vec3(1, 2, 3)));
-    for (const glm::vec3& scale : {glm::vec3(1, 1, 1), glm::vec3(1.4F, 0.6F, 0.9F), glm::vec3(-1.4F, 0.6F, 0.9F), glm::vec3(-1, -1, -0.5F)}) {
+    for (const glm::vec3& scale :
+         {glm::vec3(1, 1, 1), glm::vec3(1.4F, 0.6F, 0.9F), glm::vec3(-1.4F, 0.6F, 0.9F), glm::vec3(-1, -1, -0.5F)}) {
         const glm::mat4 place = at({0.2F, -0.1F, 0}) * turn * glm::scale(glm::mat4(1.0F), scale);
         SceneBuilder builder;
         builder.add(sphere(1.0F, 128, Shading::kSmooth), builder.add_material(diffuse(glm::vec3(0.5F))), place);
@@ -82,7 +83,7 @@ TEST_F(SurfaceTest, GreenOfANormalMapIsUpInTheImage) {
         for (glm::vec2& uv : mesh.uv0) {
             uv = {mapping.mirrored_u ? 1.0F - uv.x : uv.x, mapping.mirrored_v ? 1.0F - uv.y : uv.y};
         }
-        const float u_sign = mapping.mirrored_u ? -1.0F : 1.0F; // world x per u
+        const float u_sign = mapping.mirrored_u ? -1.0F : 1.0F;  // world x per u
         const float up_sign = mapping.mirrored_v ? -1.0F : 1.0F; // world y per −v
         if (mapping.has_tangents) { // as MikkTSpace gives them: bitangent = w · n × t is the image's up
             mesh.tangents.assign(4, glm::vec4(u_sign, 0, 0, u_sign * up_sign));
@@ -123,7 +124,8 @@ TEST_F(SurfaceTest, NormalsNeverFaceAwayFromTheViewer) {
         const glm::vec3 ray = glm::normalize(unproject(camera, pixel, 1.0F) - glm::vec3(0, -0.5F, 4));
         if (glm::length(seen[i]) > 0.5F) {
             EXPECT_LT(glm::dot(seen[i], ray), 0.0F) << i;
-            EXPECT_LT(glm::reflect(ray, seen[i]).y, 1e-3F) << i; // mirrored away from the surface, which is seen from below
+            EXPECT_LT(glm::reflect(ray, seen[i]).y, 1e-3F)
+                << i; // mirrored away from the surface, which is seen from below
             ++checked;
         }
     }
@@ -166,7 +168,8 @@ glm::dvec3 look_up(const std::vector<std::uint8_t>& rgba, glm::dvec2 uv, scene::
         const auto y = static_cast<std::size_t>(wrapped_texel(static_cast<std::int32_t>(low.y) + dy, wrap_v));
         const double weight = (dx == 1 ? f.x : 1.0 - f.x) * (dy == 1 ? f.y : 1.0 - f.y);
         for (int c = 0; c < 3; ++c) {
-            sum[c] += weight * static_cast<double>(image::linear_from_srgb(static_cast<float>(rgba[(y * 8 + x) * 4 + static_cast<std::size_t>(c)]) / 255.0F));
+            sum[c] += weight * static_cast<double>(image::linear_from_srgb(
+                                   static_cast<float>(rgba[(y * 8 + x) * 4 + static_cast<std::size_t>(c)]) / 255.0F));
         }
     }
     return sum;
@@ -185,7 +188,8 @@ TEST_F(SurfaceTest, TexturesWrapAndTransformAsInGltf) {
     const float s = std::sin(0.5F);
     const std::array<glm::vec3, 2> turned{glm::vec3(0.7F * c, 0.9F * s, 0.3F), glm::vec3(-0.7F * s, 0.9F * c, -0.2F)};
     using enum scene::Wrap;
-    for (const Case& test : {Case{kRepeat, kRepeat, identity}, Case{kMirror, kClamp, identity}, Case{kClamp, kMirror, identity}, Case{kRepeat, kMirror, turned}}) {
+    for (const Case& test : {Case{kRepeat, kRepeat, identity}, Case{kMirror, kClamp, identity},
+                             Case{kClamp, kMirror, identity}, Case{kRepeat, kMirror, turned}}) {
         SceneBuilder builder;
         scene::Material material = emitter(glm::vec3(1.0F));
         material.emissive.texture = builder.add_texture(8, card);
@@ -197,12 +201,14 @@ TEST_F(SurfaceTest, TexturesWrapAndTransformAsInGltf) {
             uv = uv * 3.0F - 1.0F;
         }
         builder.add(mesh, builder.add_material(material));
-        const Camera camera = look_at({0, 0, 4}, {0, 0, 0}, 2.0F * std::atan(0.25F), kSize, kSize); // exactly the rectangle
+        const Camera camera =
+            look_at({0, 0, 4}, {0, 0, 0}, 2.0F * std::atan(0.25F), kSize, kSize); // exactly the rectangle
         const Estimate image = path_trace(builder.scene(), camera, {.samples = 1, .renders = 1, .max_bounces = 1});
         std::size_t wrong = 0;
         for (std::uint32_t y = 0; y < kSize; ++y) {
             for (std::uint32_t x = 0; x < kSize; ++x) {
-                const glm::vec3 uv((static_cast<float>(x) + 0.5F) / kSize * 3.0F - 1.0F, (static_cast<float>(y) + 0.5F) / kSize * 3.0F - 1.0F, 1.0F);
+                const glm::vec3 uv((static_cast<float>(x) + 0.5F) / kSize * 3.0F - 1.0F,
+                                   (static_cast<float>(y) + 0.5F) / kSize * 3.0F - 1.0F, 1.0F);
                 const glm::dvec2 moved(glm::dot(test.matrix[0], uv), glm::dot(test.matrix[1], uv));
                 const glm::dvec3 error = glm::abs(image.mean[image.index(x, y)] - look_up(card, moved, test.u, test.v));
                 // Texture units place samples to 1/256 texel and may filter 8-bit values: 2/255 of the full range.

@@ -53,8 +53,9 @@ void add_walls(SceneBuilder& builder, const std::array<glm::vec3, 5>& colours, f
 
 SceneBuilder room() {
     SceneBuilder builder;
-    add_walls(builder, {glm::vec3(0.6F, 0.5F, 0.4F), glm::vec3(0.7F), glm::vec3(0.4F, 0.5F, 0.7F),
-                        glm::vec3(0.7F, 0.3F, 0.2F), glm::vec3(0.3F, 0.6F, 0.3F)},
+    add_walls(builder,
+              {glm::vec3(0.6F, 0.5F, 0.4F), glm::vec3(0.7F), glm::vec3(0.4F, 0.5F, 0.7F), glm::vec3(0.7F, 0.3F, 0.2F),
+               glm::vec3(0.3F, 0.6F, 0.3F)},
               3.0F);
     builder.add(box({-0.4F, -0.6F, -0.3F}, {0.25F, 0.4F, 0.25F}), builder.add_material(diffuse({0.7F, 0.7F, 0.3F})));
     builder.add(box({0.45F, -0.75F, 0.1F}, {0.3F, 0.25F, 0.2F}), builder.add_material(diffuse({0.5F, 0.3F, 0.6F})));
@@ -171,7 +172,8 @@ scene::Mesh turned_inside_out(scene::Mesh mesh) {
 
 glm::mat4 facing(const glm::vec3& position, const glm::vec3& direction) {
     const bool vertical = std::abs(glm::normalize(direction).y) > 0.999F;
-    return glm::inverse(glm::lookAt(position, position + direction, vertical ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0)));
+    return glm::inverse(
+        glm::lookAt(position, position + direction, vertical ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0)));
 }
 
 Camera look_at(const glm::vec3& eye, const glm::vec3& target, float fovy_rad, std::uint32_t width_px,
@@ -196,7 +198,8 @@ scene::Scene cornell_box() {
 }
 
 Camera cornell_camera(std::uint32_t size_px) {
-    return look_at({0, 0, 3.9F}, {0, 0, 0}, glm::radians(39.3F), size_px, size_px);
+    // Off the axis of symmetry: no edge of the room may run through pixel centres.
+    return look_at({0.06F, 0.03F, 3.9F}, {0.02F, 0.01F, 0}, glm::radians(39.3F), size_px, size_px);
 }
 
 scene::Scene point_lit_room() {
@@ -210,7 +213,14 @@ scene::Scene point_lit_room() {
 
 scene::Scene area_lit_room() {
     SceneBuilder builder = room();
-    builder.add(rectangle({0, 0.98F, 0.3F}, {0.6F, 0, 0}, {0, 0, 0.6F}), builder.add_material(emitter(glm::vec3(6.0F))));
+    builder.add(rectangle({0, 0.98F, 0.3F}, {0.6F, 0, 0}, {0, 0, 0.6F}),
+                builder.add_material(emitter(glm::vec3(6.0F))));
+    return builder.scene();
+}
+
+scene::Scene sky_lit_room() {
+    SceneBuilder builder = room();
+    builder.environment().constant = glm::vec3(1.0F);
     return builder.scene();
 }
 

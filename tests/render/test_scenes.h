@@ -59,6 +59,8 @@ Camera cornell_camera(std::uint32_t size_px);
 scene::Scene point_lit_room();
 /// The same room under a rectangle light.
 scene::Scene area_lit_room();
+/// The same room lit by a white sky through its open side.
+scene::Scene sky_lit_room();
 Camera room_camera(std::uint32_t width_px, std::uint32_t height_px);
 
 } // namespace fieldcast::render

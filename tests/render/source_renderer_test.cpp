@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Histories of the source, and the planes that a client rebuilds.
+#include "core/image/packing.h"
+#include "tests/render/render_test.h"
+
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace fieldcast::render {
+namespace {
+
+constexpr std::uint32_t kWidth = 48;
+constexpr std::uint32_t kHeight = 32;
+
+using SourceRendererTest = RenderTest;
+
+FrameHeader accumulating_header(const Camera& camera, std::uint64_t frame, std::uint32_t seed) {
+    FrameHeader header = plain_header(camera, 1);
+    header.frame_id = frame;
+    header.noise_frame = static_cast<std::uint32_t>(frame);
+    header.seed = seed;
+    header.cut = frame == 0;
+    header.settings.temporal_accumulation = true;
+    return header;
+}
+
+std::vector<glm::vec3> diffuse_light(const SourcePlanes& planes) {
+    const std::array wanted{PlaneSemantic::kDiffuse};
+    return image::unpack_plane(planes.download(wanted).planes.front());
+}
+
+std::vector<std::uint32_t> ids(const SourcePlanes& planes) {
+    const std::array wanted{PlaneSemantic::kId};
+    const SourceFrame frame = planes.download(wanted);
+    std::vector<std::uint32_t> result(frame.planes.front().bytes.size() / 4);
+    std::memcpy(result.data(), frame.planes.front().bytes.data(), result.size() * 4);
+    return result;
+}
+
+/// Mean over pixels of half the squared difference of two images: the variance of one.
+double variance_between(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double difference = static_cast<double>(a[i].y) - static_cast<double>(b[i].y);
+        sum += 0.5 * difference * difference;
+    }
+    return sum / static_cast<double>(a.size());
+}
+
+TEST_F(SourceRendererTest, AccumulationLowersTheVarianceAsItsAlphaSays) {
+    const scene::Scene scene = area_lit_room();
+    const scene::GpuScene gpu_scene(device(), scene, traversal());
+    const Camera camera = room_camera(kWidth, kHeight);
+    constexpr std::uint64_t kFrames = 20;
+    std::array<std::vector<glm::vec3>, 2> first;
+    std::array<std::vector<glm::vec3>, 2> last;
+    for (std::uint32_t run = 0; run < 2; ++run) {
+        SourceRenderer renderer(device(), gpu_scene);
+        for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
+            const SourcePlanes& planes = renderer.render(accumulating_header(camera, frame, 1 + run));
+            (frame == 0 ? first : last)[run] = diffuse_light(planes);
+        }
+    }
+    // Independent frames: α / (2 − α) = 1/9 of one frame's variance. The frames continue each pixel's Sobol sequence,
+    // which can only lower that; heavy tails and the precision of the planes allow 40 % more.
+    const double ratio = variance_between(last[0], last[1]) / variance_between(first[0], first[1]);
+    RecordProperty("variance_ratio", std::to_string(ratio));
+    EXPECT_LT(ratio, 1.4 / 9.0);
+    EXPECT_GT(ratio, 0.02); // 20 frames cannot do better than 1/20 much: the images must still be different
+}
+
+TEST_F(SourceRendererTest, ACutForgetsAllHistory) {
+    const scene::Scene scene = area_lit_room();
+    const scene::GpuScene gpu_scene(device(), scene, traversal());
+    const Camera camera = room_camera(kWidth, kHeight);
+    SourceRenderer renderer(device(), gpu_scene);
+    SourceRenderer fresh(device(), gpu_scene);
+    for (std::uint64_t frame = 0; frame < 4; ++frame) {
+        renderer.render(accumulating_header(camera, frame, 1));
+    }
+    FrameHeader header = accumulating_header(camera, 4, 1);
+    for (const Denoiser denoiser : {Denoiser::kNone, Denoiser::kSvgf}) {
+        header.settings.denoiser = denoiser;
+        header.cut = true;
+        const SourceFrame expected = fresh.render(header).download(kSourceSemantics);
+        EXPECT_EQ(renderer.render(header).download(kSourceSemantics).planes, expected.planes);
+    }
+    header.cut = false; // and without a cut the history counts
+    header.frame_id = 5;
+    header.noise_frame = 5;
+    SourceRenderer newer(device(), gpu_scene);
+    EXPECT_NE(renderer.render(header).download(kSourceSemantics).planes,
+              newer.render(header).download(kSourceSemantics).planes);
+}
+
+TEST_F(SourceRendererTest, RendersTheSameFrameTwiceAlike) {
+    const scene::Scene scene = area_lit_room();
+    const scene::GpuScene gpu_scene(device(), scene, traversal());
+    SourceRenderer a(device(), gpu_scene);
+    SourceRenderer b(device(), gpu_scene);
+    for (std::uint64_t frame = 0; frame < 3; ++frame) {
+        FrameHeader header = accumulating_header(room_camera(kWidth, kHeight), frame, 1);
+        header.settings.denoiser = Denoiser::kSvgf;
+        EXPECT_EQ(a.render(header).download(kSourceSemantics).planes,
+                  b.render(header).download(kSourceSemantics).planes);
+    }
+}
+
+/// A room with a box that slides to the right by 0.1 m per 100 ms.
+scene::Scene room_with_moving_box() {
+    scene::Scene scene = area_lit_room();
+    scene::Mesh mesh = box({}, glm::vec3(0.2F));
+    mesh.material = 0;
+    scene.meshes.push_back(mesh);
+    scene::Node node;
+    node.is_animated = true;
+    scene.nodes.push_back(node);
+    const auto index = static_cast<std::uint32_t>(scene.nodes.size() - 1);
+    scene.instances.push_back({index, static_cast<std::uint32_t>(scene.meshes.size() - 1)});
+    scene::AnimationChannel channel;
+    channel.node = index;
+    channel.times_s = {0.0F, 1.0F};
+    channel.values = {glm::vec4(-0.4F, 0.2F, 0.8F, 0), glm::vec4(0.6F, 0.2F, 0.8F, 0)};
+    scene.channels.push_back(channel);
+    scene.duration_s = 1.0;
+    return scene;
+}
+
+TEST_F(SourceRendererTest, WhatAMovingObjectUncoversHasNoHistory) {
+    const scene::Scene scene = room_with_moving_box();
+    scene::GpuScene gpu_scene(device(), scene, traversal());
+    const Camera camera = room_camera(kWidth, kHeight);
+    SourceRenderer renderer(device(), gpu_scene);
+    SourceRenderer fresh(device(), gpu_scene);
+    std::vector<std::uint32_t> before;
+    std::size_t uncovered = 0;
+    std::size_t followed = 0;
+    for (std::uint64_t frame = 0; frame < 5; ++frame) {
+        FrameHeader header = accumulating_header(camera, frame, 1);
+        header.scene_time_ns = static_cast<std::int64_t>(frame) * 100'000'000;
+        gpu_scene.pose(header.scene_time_ns, frame == 0);
+        const SourcePlanes& planes = renderer.render(header);
+        const std::vector<glm::vec3> light = diffuse_light(planes);
+        const std::vector<std::uint32_t> now = ids(planes);
+        header.cut = true;
+        const std::vector<glm::vec3> alone = diffuse_light(fresh.render(header));
+        const std::uint32_t box_id = static_cast<std::uint32_t>(scene.instances.size() - 1) << 12U;
+        for (std::uint32_t y = 1; frame > 0 && y + 1 < kHeight; ++y) {
+            for (std::uint32_t x = 1; x + 1 < kWidth; ++x) {
+                const std::size_t i = std::size_t{y} * kWidth + x;
+                std::set<std::uint32_t> around; // what the camera, which stands still, saw here
+                for (std::uint32_t k = 0; k < 9; ++k) {
+                    around.insert(before[(y + k / 3 - 1) * kWidth + x + k % 3 - 1]);
+                }
+                if (now[i] != box_id && !around.contains(now[i])) {
+                    EXPECT_EQ(light[i], alone[i]) << "frame " << frame << " pixel " << x << " " << y;
+                    ++uncovered;
+                }
+                followed += now[i] == box_id && light[i] != alone[i] ? 1 : 0;
+            }
+        }
+        before = now;
+    }
+    EXPECT_GT(uncovered, 5U);
+    EXPECT_GT(followed, 100U); // the box takes its history along
+}
+
+TEST_F(SourceRendererTest, RebuiltSurfacePlanesAreTheSourcesBits) {
+    const scene::Scene scene = room_with_moving_box();
+    scene::GpuScene gpu_scene(device(), scene, traversal());
+    SourceRenderer renderer(device(), gpu_scene);
+    SurfacePlanesRenderer rebuilder(device(), gpu_scene);
+    FrameHeader header = plain_header(room_camera(kWidth, kHeight), 1);
+    header.guard_band = {3, 5, 2, 1};
+    header.scene_time_ns = 300'000'000;
+    gpu_scene.pose(header.scene_time_ns, true);
+    const SourceFrame expected = renderer.render(header).download(kSourceSemantics);
+    SourcePlanes planes(device());
+    planes.resize(expected.header);
+    rebuilder.render(planes);
+    const std::array rebuilt{PlaneSemantic::kDepth, PlaneSemantic::kNormal, PlaneSemantic::kId,
+                             PlaneSemantic::kMaterial};
+    const SourceFrame actual = planes.download(rebuilt);
+    for (const Plane& plane : actual.planes) {
+        EXPECT_EQ(plane, *expected.find(plane.semantic)) << static_cast<int>(plane.semantic);
+    }
+}
+
+} // namespace
+} // namespace fieldcast::render

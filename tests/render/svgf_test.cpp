@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/image/packing.h"
+#include "tests/render/render_test.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+namespace fieldcast::render {
+namespace {
+
+constexpr std::uint32_t kSize = 48;
+
+class SvgfTest : public RenderTest {
+protected:
+    /// Demodulated diffuse light of one frame without history.
+    std::vector<glm::vec3> light(const scene::Scene& scene, const Camera& camera, Denoiser denoiser) const {
+        const scene::GpuScene gpu_scene(device(), scene, traversal());
+        SourceRenderer renderer(device(), gpu_scene);
+        FrameHeader header = plain_header(camera, 1);
+        header.settings.denoiser = denoiser;
+        header.settings.temporal_accumulation = true;
+        const std::array wanted{PlaneSemantic::kDiffuse};
+        return image::unpack_plane(renderer.render(header).download(wanted).planes.front());
+    }
+};
+
+TEST_F(SvgfTest, ConstantIlluminationPassesUnchanged) {
+    // Convex shapes in a constant sky, above no ground: every sample of every visible point is 1.
+    SceneBuilder builder;
+    builder.environment().constant = glm::vec3(1.0F);
+    builder.add(box({-0.5F, 0, 0}, glm::vec3(0.3F)), builder.add_material(diffuse({0.8F, 0.2F, 0.1F})));
+    builder.add(rectangle({0, 0, -1}, {2, 0, 0}, {0, 2, 0}), builder.add_material(diffuse({0.1F, 0.2F, 0.8F})));
+    scene::Scene scene = builder.scene();
+    scene.instances.pop_back(); // the box alone
+    for (const glm::vec3& pixel :
+         light(scene, look_at({0.2F, 0.4F, 2}, {-0.4F, 0, 0}, 0.6F, kSize, kSize), Denoiser::kSvgf)) {
+        // Sky pixels stay 0; the rest are weighted means of numbers that differ by rounding.
+        EXPECT_TRUE(pixel.y == 0.0F || std::abs(pixel.y - 1.0F) < 0.01F) << pixel.y;
+    }
+}
+
+TEST_F(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
+    // A roof of two slopes under a directional light: two exact, different values side by side.
+    SceneBuilder builder;
+    builder.add(rectangle({-1, 0, 0}, {1, 0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    builder.add(rectangle({1, 0, 0}, {1, -0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    scene::Light light_source;
+    light_source.intensity = glm::vec3(3.0F);
+    const glm::vec3 towards = glm::normalize(glm::vec3(0.8F, -1, 0));
+    builder.add_light(light_source, facing({}, towards));
+    const Camera camera = look_at({0, 4, 0.5F}, {0, 0, 0}, 0.4F, kSize, kSize);
+    const std::vector<glm::vec3> filtered = light(builder.scene(), camera, Denoiser::kSvgf);
+    const float slope = 1.0F / std::sqrt(1.25F);
+    const glm::vec2 expected =
+        glm::vec2(glm::dot(-towards, glm::vec3(-0.5F, 1, 0)), glm::dot(-towards, glm::vec3(0.5F, 1, 0))) * slope *
+        3.0F / glm::pi<float>();
+    ASSERT_GT(std::abs(expected.x - expected.y), 0.3F);
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+        const float value = filtered[std::size_t{kSize} * (kSize / 2) + x].y;
+        // R11G11B10F: 2^-7.
+        EXPECT_NEAR(value, x < kSize / 2 ? expected.x : expected.y, 0.01F) << x;
+    }
+}
+
+TEST_F(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
+    SceneBuilder builder;
+    builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    builder.add(rectangle({0, 2, 0}, {1.5F, 0, 0}, {0, 0, 1.5F}), builder.add_material(emitter(glm::vec3(5.0F))));
+    const Camera camera = look_at({0, 1.5F, 0.2F}, {0, 0, 0}, 0.3F, kSize, kSize);
+    const auto relative_spread = [](const std::vector<glm::vec3>& pixels) {
+        double sum = 0.0;
+        double squares = 0.0;
+        for (const glm::vec3& pixel : pixels) {
+            sum += static_cast<double>(pixel.y);
+            squares += static_cast<double>(pixel.y) * static_cast<double>(pixel.y);
+        }
+        const double n = static_cast<double>(pixels.size());
+        return std::pair(sum / n, std::sqrt(squares / n - sum / n * sum / n) / (sum / n));
+    };
+    const auto noisy = relative_spread(light(builder.scene(), camera, Denoiser::kNone));
+    const auto smooth = relative_spread(light(builder.scene(), camera, Denoiser::kSvgf));
+    RecordProperty("spread", std::to_string(noisy.second) + " to " + std::to_string(smooth.second));
+    // 7×7 pixels, then five levels that reach 62 pixels: far more than 49 pixels go into each, 1/7 of the spread.
+    // What the light itself varies over the image (2 %) remains.
+    EXPECT_LT(smooth.second, noisy.second / 7.0 + 0.02);
+    EXPECT_NEAR(smooth.first, noisy.first,
+                4.5 * noisy.second / kSize * noisy.first); // the mean stays, 4.5 standard errors
+}
+
+} // namespace
+} // namespace fieldcast::render
