@@ -150,6 +150,7 @@ private:
 
     void pose(std::uint32_t frame) {
         header_.frame_id = frame;
+        header_.noise_frame = frame;
         header_.scene_time_ns = static_cast<std::int64_t>(frame) * 1'000'000'000 / 30;
         header_.cut = frame == 0;
         gpu_scene_.pose(header_.scene_time_ns, header_.cut);

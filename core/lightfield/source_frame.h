@@ -26,7 +26,8 @@ struct FrameHeader {
     std::uint64_t frame_id = 0;     ///< grows by at least 1 per frame of a channel
     std::int64_t scene_time_ns = 0; ///< poses every animation of the scene
     bool cut = false;               ///< histories are void: loop wrap, teleport, scene change
-    std::uint32_t seed = 0;         ///< frame seed of all random numbers
+    std::uint32_t seed = 0;         ///< of the channel: with noise_frame it settles all random numbers of the frame
+    std::uint32_t noise_frame = 0;  ///< position in the random sequences; consecutive frames continue them
     Camera source;                  ///< without guard band
     GuardBand guard_band;           ///< planes are the source image plus this band
     RenderSettings settings;

@@ -18,7 +18,7 @@ std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
 }
 
 std::uint32_t view_seed(const FrameHeader& header, LatticePosition position) {
-    std::uint32_t seed = hash_combine(header.seed, static_cast<std::uint32_t>(header.frame_id));
+    std::uint32_t seed = hash_combine(header.seed, header.noise_frame);
     seed = hash_combine(seed, static_cast<std::uint32_t>(position.row_halves));
     return hash_combine(seed, static_cast<std::uint32_t>(position.col_halves));
 }

@@ -63,7 +63,7 @@ void SourceRenderer::State::record_trace() {
     params.width = camera.width_px;
     params.height = camera.height_px;
     params.seed = header.seed;
-    params.first_sample = static_cast<std::uint32_t>(header.frame_id) * header.settings.samples_per_pixel;
+    params.first_sample = header.noise_frame * header.settings.samples_per_pixel;
     params.samples_per_pixel = header.settings.samples_per_pixel;
     params.max_bounces = header.settings.max_bounces;
     params.flags = kernel_flags(header.settings);

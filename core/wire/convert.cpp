@@ -182,6 +182,7 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     message.set_scene_time_ns(header.scene_time_ns);
     message.set_cut(header.cut);
     message.set_seed(header.seed);
+    message.set_noise_frame(header.noise_frame);
     to_proto(header.source, *message.mutable_source());
     to_proto(header.guard_band, *message.mutable_guard_band());
     to_proto(header.settings, *message.mutable_settings());
@@ -200,6 +201,7 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
     header.scene_time_ns = message.scene_time_ns();
     header.cut = message.cut();
     header.seed = message.seed();
+    header.noise_frame = message.noise_frame();
     const auto source = from_proto(message.source());
     if (!source) {
         return tl::unexpected(source.error());

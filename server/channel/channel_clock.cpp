@@ -11,19 +11,11 @@ std::int64_t nanoseconds_of(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }
 
-/// SplitMix64 of both numbers: seeds of neighbouring frames have nothing in common.
-std::uint32_t frame_seed(std::uint32_t seed, std::uint32_t frame) {
-    std::uint64_t z = ((static_cast<std::uint64_t>(seed) << 32) | frame) + 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
-}
-
 } // namespace
 
 ChannelClock::ChannelClock(const ops::Config& config, const scene::Scene& scene)
     : scene_(scene), mode_(config.clock), fps_(static_cast<double>(config.frames_per_second)),
-      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s), seed_(config.seed) {}
+      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s) {}
 
 FrameMoment ChannelClock::next(TimePoint now) {
     if (is_first_) {
@@ -33,7 +25,7 @@ FrameMoment ChannelClock::next(TimePoint now) {
     frame_ = has_loop_ended ? 0 : frame_;
     FrameMoment moment;
     moment.scene_time_ns = scene_time_ns(now);
-    moment.seed = frame_seed(seed_, frame_);
+    moment.noise_frame = frame_;
     const std::int64_t loop = scene::loop_index(scene_, moment.scene_time_ns);
     moment.cut = is_first_ || has_loop_ended || loop != previous_loop_ || has_jumped_;
     previous_loop_ = loop;

@@ -14,7 +14,7 @@ namespace fieldcast::channel {
 struct FrameMoment {
     std::int64_t scene_time_ns = 0;
     bool cut = false;
-    std::uint32_t seed = 0;
+    std::uint32_t noise_frame = 0; ///< FrameHeader::noise_frame
 };
 
 /// Scene time of one channel. Starts at 0 with the first frame.
@@ -39,7 +39,6 @@ private:
     const double fps_;
     const std::uint32_t loop_frames_;
     const std::optional<double> fixed_time_s_;
-    const std::uint32_t seed_;
     std::uint32_t frame_ = 0; ///< since the start, or since the loop of `loop_frames_` began
     bool is_first_ = true;
     bool has_jumped_ = false;

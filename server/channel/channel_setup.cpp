@@ -79,7 +79,7 @@ void FrameRenderer::settle_guard_band() {
 
 void FrameRenderer::warm_up() {
     const auto start_ns = static_cast<std::int64_t>(config_.fixed_time_s.value_or(0.0) * 1e9);
-    const FrameHeader header = pose(0, {.scene_time_ns = start_ns, .cut = true, .seed = config_.seed});
+    const FrameHeader header = pose(0, {.scene_time_ns = start_ns, .cut = true});
     const render::SourcePlanes& source = source_renderer_->render(header);
     if (config_.has_auto_exposure) {
         settings_.exposure = render::auto_exposure(*grid_renderer_, source);

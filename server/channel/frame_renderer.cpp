@@ -67,7 +67,8 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
     header.frame_id = frame_id;
     header.scene_time_ns = moment.scene_time_ns;
     header.cut = moment.cut;
-    header.seed = moment.seed;
+    header.seed = config_.seed;
+    header.noise_frame = moment.noise_frame;
     header.source = fixed_camera_
                         ? *fixed_camera_
                         : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);

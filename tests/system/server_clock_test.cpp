@@ -64,10 +64,10 @@ TEST_F(Clock, LoopsOfFramesRepeatExactly) {
     }
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(moments[i].scene_time_ns, moments[i + 3].scene_time_ns);
-        EXPECT_EQ(moments[i].seed, moments[i + 3].seed);
+        EXPECT_EQ(moments[i].noise_frame, moments[i + 3].noise_frame);
         EXPECT_EQ(moments[i + 3].cut, i == 0);
     }
-    EXPECT_NE(moments[0].seed, moments[1].seed);
+    EXPECT_NE(moments[0].noise_frame, moments[1].noise_frame);
 }
 
 TEST_F(Clock, FixedTimeStands) {
