@@ -36,8 +36,11 @@ void ProgressLine::show(const play::Progress& progress) {
     has_line_ = true;
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     std::fprintf(stderr, "%s", is_terminal_ ? "\r\x1b[K" : "");
-    std::fprintf(stderr, "frame %llu/%llu (id %llu)", number(progress.shown), number(progress.wanted),
-                 number(progress.latest.frame_id));
+    std::fprintf(stderr, "frame %llu", number(progress.shown));
+    if (progress.wanted != 0) {
+        std::fprintf(stderr, "/%llu", number(progress.wanted));
+    }
+    std::fprintf(stderr, " (id %llu)", number(progress.latest.frame_id));
     std::fprintf(stderr, "  %.2f fps  %.2f MB", progress.frames_per_second,
                  static_cast<double>(progress.latest.payload_bytes) * 1e-6);
     std::fprintf(stderr, "  discards %.2f %%", discarded_percent(progress.latest));
