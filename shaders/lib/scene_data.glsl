@@ -92,6 +92,10 @@ MaterialRecord load_material(uint material) {
     return m;
 }
 
+uint texture_use_set(uint use) { // 0 or 1
+    return floatBitsToUint(texelFetch(texture_uses_, int(use) * 2).w) >> 24;
+}
+
 float wrap_coordinate(float u, uint mode, float half_texel) {
     float repeated = fract(u);
     float mirrored = 1.0 - abs(1.0 - 2.0 * fract(0.5 * u));

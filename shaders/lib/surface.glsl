@@ -107,11 +107,14 @@ vec3 mapped_normal(WorldTriangle t, MaterialRecord m, vec3 weights, vec3 normal,
     return normalize(result);
 }
 
-vec4 interpolate_uv(uvec3 vertices, vec3 weights, out mat3 corners) {
+// `corners`: of the first uv set, or of the second one if the normal map uses that; tangents follow it.
+vec4 interpolate_uv(uvec3 vertices, vec3 weights, uint normal_use, out mat3 corners) {
     vec4 a = load_vertex_uv(vertices.x);
     vec4 b = load_vertex_uv(vertices.y);
     vec4 c = load_vertex_uv(vertices.z);
-    corners = mat3(vec3(a.xy, 0.0), vec3(b.xy, 0.0), vec3(c.xy, 0.0));
+    bool second = normal_use != kNoIndex && texture_use_set(normal_use) != 0u;
+    corners = second ? mat3(vec3(a.zw, 0.0), vec3(b.zw, 0.0), vec3(c.zw, 0.0))
+                     : mat3(vec3(a.xy, 0.0), vec3(b.xy, 0.0), vec3(c.xy, 0.0));
     return a * weights.x + b * weights.y + c * weights.z;
 }
 
@@ -151,7 +154,7 @@ Surface make_surface(WorldTriangle t, vec2 barycentrics, vec3 direction, float c
     bool is_front = dot(geometric, direction) <= 0.0;
 
     mat3 uv_corners;
-    vec4 uv = interpolate_uv(t.vertices, weights, uv_corners);
+    vec4 uv = interpolate_uv(t.vertices, weights, m.normal_use, uv_corners);
     vec2 duv1 = uv_corners[1].xy - uv_corners[0].xy;
     vec2 duv2 = uv_corners[2].xy - uv_corners[0].xy;
     float uv_area = abs(duv1.x * duv2.y - duv1.y * duv2.x);

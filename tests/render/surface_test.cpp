@@ -68,20 +68,26 @@ struct Mapping {
     bool mirrored_v = false;
     bool has_tangents = false;
     bool mirrored_instance = false;
+    bool second_set = false; ///< the other one is constant
 };
 
 TEST_F(SurfaceTest, GreenOfANormalMapIsUpInTheImage) {
     // The map's one texel leans to the right and, more, up (as the image is seen): (0.36, 0.48, 0.8).
     const std::vector<std::uint8_t> texel{173, 189, 230, 255};
     const glm::vec3 lean = glm::normalize(glm::vec3(173, 189, 230) / 127.5F - 1.0F);
-    for (int bits = 0; bits < 16; ++bits) {
-        const Mapping mapping{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+    for (int bits = 0; bits < 32; ++bits) {
+        const Mapping mapping{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0};
         SceneBuilder builder;
         scene::Material material = diffuse(glm::vec3(0.5F));
         material.normal.texture = builder.add_texture(1, texel);
         scene::Mesh mesh = rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         for (glm::vec2& uv : mesh.uv0) {
             uv = {mapping.mirrored_u ? 1.0F - uv.x : uv.x, mapping.mirrored_v ? 1.0F - uv.y : uv.y};
+        }
+        if (mapping.second_set) {
+            mesh.uv1 = mesh.uv0;
+            mesh.uv0.assign(4, glm::vec2(0.5F));
+            material.normal.uv_set = 1;
         }
         const float u_sign = mapping.mirrored_u ? -1.0F : 1.0F;  // world x per u
         const float up_sign = mapping.mirrored_v ? -1.0F : 1.0F; // world y per −v
