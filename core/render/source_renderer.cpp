@@ -37,11 +37,12 @@ struct SourceRenderer::State {
     gpu::Buffer cameras; ///< current, previous
     gpu::Buffer invalid_samples;
     std::optional<Camera> previous;
+    bool has_stored_history = false; ///< the frame before accumulated or filtered
 };
 
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
     const Camera now = with_guard_band(header.source, header.guard_band);
-    return previous && !header.cut && previous->width_px == now.width_px && previous->height_px == now.height_px;
+    return previous && has_stored_history && !header.cut && previous->width_px == now.width_px && previous->height_px == now.height_px;
 }
 
 void SourceRenderer::State::upload_cameras() {
@@ -113,6 +114,7 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.planes.resize(timed);
     s.svgf.swap();
     s.previous = camera;
+    s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser == Denoiser::kSvgf;
     return s.planes;
 }
 
