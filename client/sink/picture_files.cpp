@@ -31,6 +31,21 @@ void write_quilt(const std::filesystem::path& folder, const Picture& picture) {
                      image::assemble_quilt(picture.grid, picture.views.views, layout));
 }
 
+/// The planes of the image itself. All parts of an EXR show the same window, which planes with layers stacked below
+/// would leave.
+SourceFrame without_layers(const SourceFrame& source) {
+    SourceFrame image;
+    image.header = source.header;
+    image.header.layer_count = 0;
+    for (const Plane& plane : source.planes) {
+        Plane first = plane;
+        first.height_px = plane_height(image.header, plane.semantic);
+        first.bytes.resize(plane_bytes(first.format, first.width_px, first.height_px));
+        image.planes.push_back(std::move(first));
+    }
+    return image;
+}
+
 } // namespace
 
 void write_picture(const std::filesystem::path& folder, const Picture& picture, const Products& products) {
@@ -50,7 +65,7 @@ void write_picture(const std::filesystem::path& folder, const Picture& picture, 
                                  image::SweepPath::kCircle, kLookAroundDelay);
     }
     if (products.source_exr && picture.source != nullptr) {
-        image::write_exr(folder / "source.exr", *picture.source);
+        image::write_exr(folder / "source.exr", without_layers(*picture.source));
     }
 }
 

@@ -14,7 +14,7 @@ struct Products {
     bool views = true;          ///< view_r{row}_c{col}.png, row 0 on top
     bool contact_sheet = false; ///< contact_sheet.png, all views as the grid has them, with gaps
     bool look_around = false;   ///< look_around.png, an animation that sweeps the views
-    bool source_exr = false;    ///< source.exr, one part per plane
+    bool source_exr = false;    ///< source.exr, one part per plane, without the layers of BLEND surfaces
 };
 
 /// One light field: the views of `grid`, row-major, all of one size.
