@@ -55,7 +55,9 @@ private:
 };
 
 int report(const client::Options& options, const client::play::PlayResult& result, bool was_interrupted) {
-    std::fputs(to_table(result.summary).c_str(), stdout);
+    if (result.summary.shown > 0) {
+        std::fputs(to_table(result.summary).c_str(), stdout);
+    }
     if (!options.json.empty()) {
         const std::string json = to_json(result.summary);
         image::write_file_atomically(options.json, std::as_bytes(std::span(json)));
