@@ -31,12 +31,13 @@ TEST_F(Log, StartsWithTimeLevelAndEvent) {
 
 TEST_F(Log, FormatsNumbersAndTruth) {
     const std::string line = lines_of([] {
-        info("frame", {{"ms", 1.25}, {"cut", true}, {"id", 4000000000U}, {"n", -3}});
+        info("frame", {{"ms", 1.25}, {"cut", true}, {"id", 18446744073709551615ULL}, {"n", -3}});
     });
-    EXPECT_THAT(line, EndsWith(" frame ms=1.25 cut=true id=4000000000 n=-3\n"));
+    EXPECT_THAT(line, EndsWith(" frame ms=1.25 cut=true id=18446744073709551615 n=-3\n"));
 }
 
 TEST_F(Log, QuotesValuesThatWouldBreakTheLine) {
+    EXPECT_THAT(lines_of([] { warn("peer", {{"name", "\x1b[2J"}}); }), MatchesRegex(".* warning +peer name=\" .2J\"\n"));
     const std::string line = lines_of([] { warn("refused", {{"name", "a b"}, {"why", "x=\"1\"\ny"}, {"empty", ""}}); });
     EXPECT_THAT(line, EndsWith(" refused name=\"a b\" why=\"x=\\\"1\\\" y\" empty=\"\"\n"));
 }
@@ -51,7 +52,7 @@ TEST_F(Log, LeavesOutWhatIsBelowTheLevel) {
     EXPECT_THAT(lines_of([] { debug("frame"); }), HasSubstr("debug"));
     set_level(Level::kError);
     EXPECT_EQ(lines_of([] { warn("slow"); }), "");
-    EXPECT_THAT(lines_of([] { error("lost"); }), HasSubstr("error lost"));
+    EXPECT_THAT(lines_of([] { error("lost"); }), MatchesRegex(".* error +lost\n"));
 }
 
 TEST_F(Log, LinesOfThreadsDoNotMix) {
