@@ -3,9 +3,10 @@
 // BLEND surfaces in front of what a pixel sees, composited over it exactly per view. Their illumination is reprojected
 // from the source's layer pages; what those do not show is path traced.
 #extension GL_GOOGLE_include_directive : require
+#include "lib/linear_index.glsl"
 #include "lib/listed_path.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { TraceListParams params; };
 
 #include "lib/reprojection.glsl"
@@ -38,7 +39,7 @@ vec3 composite(vec3 behind, uint layer, Visibility seen, CameraRecord camera, ve
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = linear_index();
     if (item >= params.counters.at[kCounterLayers]) {
         return;
     }

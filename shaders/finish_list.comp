@@ -8,8 +8,9 @@ layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { FinishListParams params; };
 
 void finish(uint count_at, uint groups_at) {
-    params.counters.at[groups_at] = (params.counters.at[count_at] + params.group_size - 1u) / params.group_size;
-    params.counters.at[groups_at + 1u] = 1u;
+    uint groups = (params.counters.at[count_at] + kLinearGroup - 1u) / kLinearGroup;
+    params.counters.at[groups_at] = min(groups, kLinearGroupsX);
+    params.counters.at[groups_at + 1u] = (groups + kLinearGroupsX - 1u) / kLinearGroupsX;
     params.counters.at[groups_at + 2u] = 1u;
 }
 

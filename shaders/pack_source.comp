@@ -3,13 +3,14 @@
 // Illumination into wire precision: views are made from this, never from something finer.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.h"
+#include "lib/linear_index.glsl"
 #include "lib/packing.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { PackParams params; };
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
+    uint pixel = linear_index();
     if (pixel < params.pixel_count) {
         params.diffuse.at[pixel] = pack_r11g11b10(params.diffuse_in.at[pixel].rgb);
         params.specular.at[pixel] = pack_r11g11b10(params.specular_in.at[pixel].rgb);

@@ -3,10 +3,11 @@
 // G-buffer planes of the source, every page, in wire precision, from its visibility.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/linear_index.glsl"
 #include "lib/pages.glsl"
 #include "lib/surface.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { SourceSurfacesParams params; };
 
 void store(uint pixel, float depth, uint normal, uint id, uint material) {
@@ -18,7 +19,7 @@ void store(uint pixel, float depth, uint normal, uint id, uint material) {
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = linear_index();
     if (index >= params.width * params.height * params.page_count) {
         return;
     }

@@ -4,8 +4,9 @@
 // spline, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
 #extension GL_GOOGLE_include_directive : require
 #include "lib/filter_taps.glsl"
+#include "lib/linear_index.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 
 struct Signal {
     vec4 sum;    // colour, variance
@@ -51,7 +52,7 @@ void store(uint pixel, vec4 diffuse, vec4 specular) {
 }
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
+    uint pixel = linear_index();
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }

@@ -5,8 +5,9 @@
 // partner by normal and depth, do not stay at one sample (black specks along outlines).
 #extension GL_GOOGLE_include_directive : require
 #include "lib/filter_taps.glsl"
+#include "lib/linear_index.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 
 const float kLeastWeight = 0.02; // 48 taps: together at most as much as the pixel itself
 
@@ -16,7 +17,7 @@ void pass_through(uint pixel) {
 }
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
+    uint pixel = linear_index();
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }

@@ -6,9 +6,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/bsdf.glsl"
 #include "lib/camera.glsl"
+#include "lib/linear_index.glsl"
 #include "lib/pages.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(set = 1, binding = kTemporalGeometry) uniform usamplerBuffer geometry_;
 layout(set = 1, binding = kTemporalPreviousGeometry) uniform usamplerBuffer previous_geometry_;
 layout(set = 1, binding = kTemporalPreviousDiffuse) uniform samplerBuffer previous_diffuse_;
@@ -112,7 +113,7 @@ void store(uint pixel, vec3 diffuse, vec3 specular, vec4 moments, float frames) 
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = linear_index();
     if (index >= params.width * params.height * params.page_count) {
         return;
     }

@@ -3,9 +3,10 @@
 // Exposure, tone map and sRGB encoding; four pixels become three words of packed RGB8.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/frame.h"
+#include "lib/linear_index.glsl"
 #include "lib/packing.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { ToneMapParams params; };
 
 // K. Narkowicz. ACES Filmic Tone Mapping Curve. 2016 (fit of the ACES reference transform).
@@ -26,7 +27,7 @@ uint encode_pixel(uint pixel) {
 }
 
 void main() {
-    uint quad = gl_GlobalInvocationID.x;
+    uint quad = linear_index();
     if (quad * 4u >= params.pixel_count) {
         return;
     }

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Path traces the pixels that no source pixel could be reused for: one compacted list over all views.
 #extension GL_GOOGLE_include_directive : require
+#include "lib/linear_index.glsl"
 #include "lib/listed_path.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { TraceListParams params; };
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = linear_index();
     if (item >= params.counters.at[kCounterHoles]) {
         return;
     }

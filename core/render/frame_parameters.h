@@ -5,6 +5,8 @@
 #include "core/lightfield/source_frame.h"
 #include "shaders/shared/frame.h"
 
+#include <algorithm>
+
 namespace fieldcast::render {
 
 /// Flags of a frame's settings for kernels.
@@ -16,6 +18,12 @@ inline std::uint32_t kernel_flags(const RenderSettings& settings) {
 /// Luminance above which one indirect contribution is cut: relative to the frame's mean, which exposure brings to 0.18.
 inline float max_indirect(const RenderSettings& settings) {
     return settings.indirect_clamp * 0.18F / settings.exposure;
+}
+
+/// Groups of a kernel that uses lib/linear_index.glsl.
+inline gpu::GroupCount linear_groups(std::uint32_t items) {
+    const std::uint32_t groups = gpu::groups_for(items, shared::kLinearGroup);
+    return {std::min(groups, shared::kLinearGroupsX), gpu::groups_for(groups, shared::kLinearGroupsX), 1};
 }
 
 /// Same hash as lib/random.glsl.

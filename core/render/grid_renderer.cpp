@@ -15,8 +15,6 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
-
 std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of lib/views.glsl
     return (request.width_px * request.height_px + 3U) & ~3U;
 }
@@ -161,7 +159,7 @@ void GridRenderer::State::record_interleave(const SourcePlanes& source) {
     params.illumination = illumination.address();
     params.pixel_count = source.texel_count();
     recorder.stage("interleave");
-    recorder.dispatch(interleave_kernel, {}, params, {gpu::groups_for(params.pixel_count, kGroup), 1, 1});
+    recorder.dispatch(interleave_kernel, {}, params, linear_groups(params.pixel_count));
     recorder.barrier();
 }
 
@@ -180,9 +178,9 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.settings = reproject_settings(header.settings.reprojection);
     recorder.stage("reproject");
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
-                      {gpu::groups_for(params.width, kGroup), params.height, params.view_count});
+                      {gpu::groups_for(params.width, shared::kLinearGroup), params.height, params.view_count});
     recorder.barrier();
-    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), kGroup}, {1, 1, 1});
+    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address()}, {1, 1, 1});
     recorder.barrier();
 }
 
@@ -224,7 +222,7 @@ void GridRenderer::State::record_tone_map(const FrameHeader& header) {
     params.flags = kernel_flags(header.settings);
     params.exposure = header.settings.exposure;
     recorder.stage("tone_map");
-    recorder.dispatch(tone_map_kernel, {}, params, {gpu::groups_for(params.pixel_count / 4, kGroup), 1, 1});
+    recorder.dispatch(tone_map_kernel, {}, params, linear_groups(params.pixel_count / 4));
     recorder.barrier();
 }
 

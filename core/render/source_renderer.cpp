@@ -83,7 +83,7 @@ void SourceRenderer::State::record_pack() {
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
     params.pixel_count = planes.texel_count();
     recorder.stage("pack");
-    recorder.dispatch(pack, {}, params, {gpu::groups_for(params.pixel_count, 64), 1, 1});
+    recorder.dispatch(pack, {}, params, linear_groups(params.pixel_count));
     recorder.barrier();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/source_surfaces.h"
 
+#include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
 #include "shaders/shared/frame.h"
 
@@ -44,7 +45,7 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     params.height = widened.height_px;
     params.page_count = planes.page_count();
     recorder.stage("source_surfaces");
-    recorder.dispatch(surfaces_, {&scene_.bindings()}, params, {gpu::groups_for(planes.texel_count(), 64), 1, 1});
+    recorder.dispatch(surfaces_, {&scene_.bindings()}, params, linear_groups(planes.texel_count()));
     recorder.barrier();
 }
 

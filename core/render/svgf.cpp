@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/svgf.h"
 
+#include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
 
 namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
 constexpr std::uint32_t kLevels = 5;
 constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
 
@@ -116,7 +116,7 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
     params.alpha = frame.settings.temporal_alpha;
     recorder.stage("temporal");
     recorder.dispatch(temporal_, {&scene_.bindings(), &temporal_sets_[current_]}, params,
-                      {gpu::groups_for(texel_count_, kGroup), 1, 1});
+                      linear_groups(texel_count_));
     recorder.barrier();
     result_diffuse_ = &now.diffuse;
     result_specular_ = &now.specular;
@@ -132,7 +132,7 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
     params.sigma_luminance = 4.0F; // the paper's values
     params.sigma_depth = 1.0F;
     params.normal_squarings = 7; // 128
-    const gpu::GroupCount groups{gpu::groups_for(texel_count_, kGroup), 1, 1};
+    const gpu::GroupCount groups = linear_groups(texel_count_);
     recorder.stage("denoise");
     std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
     const auto run = [&](const gpu::Kernel& kernel, std::uint32_t output) {

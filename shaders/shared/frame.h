@@ -19,6 +19,10 @@ struct CameraRecord {
 };
 SHARED_BUFFER(CameraBuffer, CameraRecord);
 
+// Kernels over lists: invocations per group, and groups in x before the list goes on in y.
+const uint kLinearGroup = 64;
+const uint kLinearGroupsX = 32768;
+
 // What a pixel sees: the first surface that is not BLEND.
 struct Visibility {
     uint instance;    // kNoInstance: nothing
@@ -213,7 +217,6 @@ const uint kReprojectIllumination = 1; // RG32UI: diffuse, specular (R11G11B10F)
 // finish_list.comp: group counts of an indirect dispatch from a list's length.
 struct FinishListParams {
     UintBuffer counters;
-    uint group_size;
 };
 
 // trace_holes.comp and composite_layers.comp: the listed pixels. The latter reads set 1: kReproject….

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernels over long lists: devices allow only 65535 groups per dimension, so longer lists go on in y.
+#ifndef FIELDCAST_LIB_LINEAR_INDEX
+#define FIELDCAST_LIB_LINEAR_INDEX
+#include "shared/frame.h"
+
+// Index of this invocation; the kernel's local size is kLinearGroup × 1 × 1. May lie beyond the list's end.
+uint linear_index() {
+    return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kLinearGroup + gl_LocalInvocationID.x;
+}
+
+#endif
