@@ -19,7 +19,10 @@ std::string to_string(const grpc::ByteBuffer& buffer) {
                : std::string();
 }
 
-void set_deadline(grpc::ClientContext& context) {
+/// Waits for the connection: gRPC 1.51 reads errno of `connect` after calls that may have changed it, so that now and
+/// then a connection that is merely under way counts as failed at first. Users' clients dial again.
+void prepare(grpc::ClientContext& context) {
+    context.set_wait_for_ready(true);
     context.set_deadline(std::chrono::system_clock::now() + kCallDeadline);
 }
 
@@ -33,7 +36,7 @@ std::shared_ptr<grpc::Channel> connect(int port) {
 }
 
 OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel) : stub_(v1::LightField::NewStub(channel)) {
-    set_deadline(context_);
+    prepare(context_);
     stream_ = stub_->Open(&context_);
 }
 
@@ -73,7 +76,7 @@ grpc::Status OpenCall::finish() {
 
 grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response) {
     grpc::ClientContext context;
-    set_deadline(context);
+    prepare(context);
     grpc::ByteBuffer answer;
     const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC);
     const grpc::Status status = grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer>(
@@ -85,7 +88,7 @@ grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::str
 grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request,
                           std::string& response) {
     grpc::ClientContext context;
-    set_deadline(context);
+    prepare(context);
     const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::BIDI_STREAMING);
     using Factory = grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>;
     const std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream(

@@ -158,7 +158,7 @@ TEST_F(Service, ManyClientsComeAndGo) {
             call.configure(wish(i % 2 == 0 ? v1::DELIVERY_MODE_VIEWS : v1::DELIVERY_MODE_SCENE));
             for (int frame = 0; frame < 5;) {
                 const auto message = call.read_until(Kind::kFrameChunk);
-                ASSERT_TRUE(message.has_value());
+                ASSERT_TRUE(message.has_value()) << call.finish().error_message();
                 if (message->frame_chunk().has_trailer()) {
                     call.acknowledge(message->frame_chunk());
                     ++frame;
