@@ -14,4 +14,7 @@ void add_trace_command(CLI::App& app);
 /// Stage breakdown of whole frames (the paper's figure 3).
 void add_frame_command(CLI::App& app);
 
+/// What the stages of hole filling save and cost.
+void add_holes_command(CLI::App& app);
+
 } // namespace fieldcast::bench

@@ -32,6 +32,7 @@ struct FrameOptions {
     double spacing_m = 0.0;
     double exposure = 0.0;
     bool guard_band = true;
+    std::string holes = "all";
     RenderSettings settings;
 };
 
@@ -84,6 +85,7 @@ public:
         }
         choose_grid();
         header_.settings = options.settings;
+        choose_holes();
         pose(0);
         if (options.guard_band) {
             guard_band_ = render::measure_guard_band(device, gpu_scene_, header_.source, grid_);
@@ -108,7 +110,7 @@ public:
         for (const View& view : views_.views) {
             sample.hole_pixels += view.discards.total();
         }
-        sample.hole_paths = sample.hole_pixels * spp;
+        sample.hole_paths = static_cast<double>(grid_renderer_.hole_counts().traced) * spp;
         sample.synthesised_pixels = static_cast<double>(grid_.view_count() - 1) * size_.width_px * size_.height_px;
         return sample;
     }
@@ -146,6 +148,15 @@ private:
         if (const auto problem = grid_problem(grid_)) {
             throw UserError("--grid: " + *problem);
         }
+    }
+
+    void choose_holes() {
+        const auto holes = parse_hole_filling(options_.holes, grid_.rows, grid_.cols);
+        if (!holes) {
+            throw UserError("--holes " + options_.holes +
+                            ": expected all, none or a list of previous,isolated,cascade,source,denoise");
+        }
+        header_.settings.holes = *holes;
     }
 
     void pose(std::uint32_t frame) {
@@ -190,6 +201,7 @@ nlohmann::ordered_json summarise(const gpu::Device& device, const FrameOptions& 
     }
     json["frame_ms"] = of(frame_ms);
     json["hole_share"] = of([](const FrameSample& s) { return s.hole_pixels / std::max(1.0, s.synthesised_pixels); });
+    json["traced_share"] = of([](const FrameSample& s) { return s.hole_paths / std::max(1.0, s.synthesised_pixels); });
     json["ns_per_source_path"] =
         of([&](const FrameSample& s) { return ns_per(stage_ms(s, "source_trace"), s.source_paths); });
     json["ns_per_hole_path"] = of([&](const FrameSample& s) { return ns_per(stage_ms(s, "holes"), s.hole_paths); });
@@ -210,7 +222,7 @@ void print_table(const nlohmann::ordered_json& json) {
     const double hole_ns = json["ns_per_hole_path"];
     std::cout << "frame             " << std::setw(9) << total << '\n'
               << std::setprecision(2) << "holes: " << 100.0 * json["hole_share"].get<double>()
-              << " % of the synthesised pixels\n"
+              << " % of the synthesised pixels, path traced " << 100.0 * json["traced_share"].get<double>() << " %\n"
               << std::setprecision(0) << "per path: source " << source_ns << " ns, hole " << hole_ns << " ns (ratio "
               << std::setprecision(2) << hole_ns / std::max(source_ns, 1e-9) << ", target 1.30)\n"
               << "peak memory: " << json["peak_rss_bytes"].get<double>() / 1048576.0 << " MiB\n";
@@ -264,6 +276,9 @@ void add_frame_command(CLI::App& app) {
     command->add_option("--bounces", options->settings.max_bounces)->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("!--no-nee", options->settings.next_event_estimation, "without next event estimation");
     command->add_flag("!--no-guard-band", options->guard_band, "source without guard band, as in the paper");
+    command->add_option("--holes", options->holes,
+                        "all, none (path traced), or a list of previous,isolated,cascade,source,denoise")
+        ->capture_default_str();
     command->add_option("--device", options->device, "part of the Vulkan device's name");
     command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
     command->add_option("--json", options->json, "write the results to this file");

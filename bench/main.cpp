@@ -15,6 +15,7 @@ int start(int argc, char** argv) {
     app.require_subcommand(1);
     fieldcast::bench::add_trace_command(app);
     fieldcast::bench::add_frame_command(app);
+    fieldcast::bench::add_holes_command(app);
     CLI11_PARSE(app, argc, argv);
     return 0;
 }

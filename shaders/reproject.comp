@@ -1,9 +1,10 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Reprojects the source's illumination into every pixel of every view and remodulates it with the view's own material.
-// What cannot be reused goes to the hole list. Sky and emission are exact.
+// What cannot be reused becomes a hole. Sky and emission are exact.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/hole_map.glsl"
 #include "lib/lights.glsl"
 #include "lib/views.glsl"
 
@@ -13,14 +14,14 @@ layout(push_constant, scalar) uniform Push { ReprojectParams params; };
 
 #include "lib/reprojection.glsl"
 
-void discard_pixel(uint view, uint pixel, uint reason) {
+void discard_pixel(uint view, uvec2 at, uint reason) {
     atomicAdd(params.counters.at[kCounterDiscards + view * 4u + reason], 1u);
-    uint slot = atomicAdd(params.counters.at[kCounterHoles], 1u);
-    params.holes.at[slot] = pixel;
+    HoleBit bit = hole_bit(view, at, params.width, params.height);
+    atomicOr(params.holes.at[bit.word], bit.mask);
 }
 
 // Radiance of a pixel that sees a surface; false: it has to be traced.
-bool reproject(uint view, uint pixel, Visibility seen, CameraRecord camera, vec2 position, out vec3 radiance) {
+bool reproject(uint view, Visibility seen, CameraRecord camera, vec2 position, out vec3 radiance) {
     vec3 direction = camera_direction(camera, position);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 at = intersect_plane(triangle, camera.origin, direction);
@@ -31,13 +32,13 @@ bool reproject(uint view, uint pixel, Visibility seen, CameraRecord camera, vec2
     vec2 size = vec2(camera_size(source));
     radiance = vec3(0.0);
     if (!(p.z > 0.0) || any(lessThan(p.xy, vec2(0.0))) || any(greaterThanEqual(p.xy, size))) {
-        discard_pixel(view, pixel, kDiscardFrustum);
+        discard_pixel(view, uvec2(position), kDiscardFrustum);
         return false;
     }
     float footprint = max(p.z / source.focal_px, at.z / camera.focal_px);
     Gathered sum = gather_around(source, 0u, p.xy, make_target(s, seen.instance, direction, footprint, at.z));
     if (sum.weight == 0.0) {
-        discard_pixel(view, pixel, sum.reason);
+        discard_pixel(view, uvec2(position), sum.reason);
         return false;
     }
     Bsdf b = make_bsdf(s, direction);
@@ -59,7 +60,7 @@ void main() {
     if (seen.instance == kNoInstance) {
         radiance = environment_radiance(load_scene_info(), normalize(camera_direction(camera, position)));
         params.radiance.at[pixel] = pack_half3(radiance);
-    } else if (reproject(id.z, pixel, seen, camera, position, radiance)) {
+    } else if (reproject(id.z, seen, camera, position, radiance)) {
         params.radiance.at[pixel] = pack_half3(radiance);
     }
     if (kHasBlend && params.layers.at[pixel * 2u].instance != kNoInstance) {

@@ -1,25 +1,41 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Path traces the pixels that no source pixel could be reused for: one compacted list over all views.
+// Path traces listed holes and blends them with what is known of them from the frame before. Paths end where they meet
+// a surface that the source shows: its illumination is there already, without noise.
 #extension GL_GOOGLE_include_directive : require
-#include "lib/linear_index.glsl"
-#include "lib/listed_path.glsl"
+#include "shared/holes.h"
 
 layout(local_size_x = kLinearGroup) in;
-layout(push_constant, scalar) uniform Push { TraceListParams params; };
+layout(push_constant, scalar) uniform Push { HoleParams params; };
+
+#define PATH_ENDS_IN_SOURCE
+#include "lib/holes.glsl"
+#include "lib/listed_path.glsl"
 
 void main() {
     uint item = linear_index();
-    if (item >= params.counters.at[kCounterHoles]) {
+    if (item >= params.counters.at[params.list]) {
         return;
     }
-    uint index = params.list.at[item];
+    uint part = params.list == kCounterFirstHoles ? 0u : 2u;
+    uint number = params.lists.at[part * params.hole_count + item];
+    HoleFrame frame = params.frames.at[0];
+    uint index = frame.pixels.at[number];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
-    CameraRecord camera = params.cameras.at[pixel.view + 1u];
+    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
     vec3 direction;
     float cone_width;
     Surface s = visible_surface(camera, vec2(pixel.x, pixel.y) + 0.5, params.visibility.at[index], direction, cone_width);
     uint seed = pixel_seed(params.views.at[pixel.view].seed, pixel.x, pixel.y);
-    vec3 radiance = trace_radiance(params, s, direction, cone_width, 1.0 / camera.focal_px, seed);
-    params.radiance.at[index] = pack_half3(radiance);
+    PathSettings settings = PathSettings(params.max_bounces & 0xFFFFu,
+                                         ((params.max_bounces >> 16) & kFlagNextEventEstimation) != 0u,
+                                         params.max_indirect);
+    Illumination traced = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,
+                                             1.0 / camera.focal_px, seed);
+    HoleLight light = unpack_hole_light(frame.light.at[number]);
+    light.frames = min(light.frames + 1.0, 32.0);
+    float alpha = max(params.alpha, 1.0 / light.frames);
+    light.diffuse = mix(light.diffuse, traced.diffuse, alpha);
+    light.specular = mix(light.specular, traced.specular, alpha);
+    frame.light.at[number] = pack_hole_light(light);
 }

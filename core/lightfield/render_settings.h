@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace fieldcast {
 
@@ -19,6 +21,23 @@ struct ReprojectionThresholds {
     bool operator==(const ReprojectionThresholds&) const = default;
 };
 
+/// How pixels are filled that the source does not show, cheapest first; what is left is path traced (docs/lightfield.md).
+struct HoleFilling {
+    bool previous_frame = true;     ///< average the hole's own light over frames; trace settled holes now and then only
+    bool isolated = true;           ///< isolated holes take light of the same surface around their place in the source
+    std::uint32_t cascade_rows = 0; ///< inner views take holes from the corner views of a grid of so many rows …
+    std::uint32_t cascade_cols = 0; ///< … and columns, anchored on the lattice; 0: none
+    bool end_in_source = true;      ///< paths end on surfaces that the source shows
+    bool denoise = true;            ///< smooth the light of holes over their surface
+
+    static constexpr HoleFilling path_traced() { return {false, false, 0, 0, false, false}; }
+    bool operator==(const HoleFilling&) const = default;
+};
+
+/// Reads "all", "none" or a list of previous, isolated, cascade, source, denoise; the cascade is that of a grid of
+/// `rows` × `cols`. Empty if malformed.
+std::optional<HoleFilling> parse_hole_filling(const std::string& text, std::uint32_t rows, std::uint32_t cols);
+
 /// Every parameter that changes a pixel, on both sides of the wire. Travels in each frame header.
 struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
@@ -31,6 +50,7 @@ struct RenderSettings {
     ToneMap tone_map = ToneMap::kClampSrgb;
     float exposure = 1.0F; ///< multiplies linear radiance before the tone map
     ReprojectionThresholds reprojection;
+    HoleFilling holes;
 
     bool operator==(const RenderSettings&) const = default;
 };

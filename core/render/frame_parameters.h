@@ -20,6 +20,11 @@ inline float max_indirect(const RenderSettings& settings) {
     return settings.indirect_clamp * 0.18F / settings.exposure;
 }
 
+inline shared::ReprojectSettings reproject_settings(const ReprojectionThresholds& thresholds) {
+    return {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
+            thresholds.min_weight};
+}
+
 /// Groups of a kernel that uses lib/linear_index.glsl.
 inline gpu::GroupCount linear_groups(std::uint32_t items) {
     const std::uint32_t groups = gpu::groups_for(items, shared::kLinearGroup);

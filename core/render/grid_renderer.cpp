@@ -3,12 +3,11 @@
 
 #include "core/render/camera_record.h"
 #include "core/render/frame_parameters.h"
+#include "core/render/hole_filler.h"
 #include "core/render/kernels.h"
 #include "core/render/visibility_depth.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <glm/gtc/packing.hpp>
 
 namespace fieldcast::render {
@@ -19,24 +18,59 @@ std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of li
     return (request.width_px * request.height_px + 3U) & ~3U;
 }
 
-shared::ReprojectSettings reproject_settings(const ReprojectionThresholds& thresholds) {
-    return {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
-            thresholds.min_weight};
+/// Index of `position` among `positions`, which gets it if it is not there.
+std::uint32_t index_of(std::vector<LatticePosition>& positions, LatticePosition position) {
+    const auto found = std::ranges::find(positions, position);
+    const auto index = static_cast<std::uint32_t>(found - positions.begin());
+    if (found == positions.end()) {
+        positions.push_back(position);
+    }
+    return index;
+}
+
+/// Indices of the views whose holes fill those of the others; positions that are missing are added.
+std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions) {
+    if (holes.cascade_rows == 0 || holes.cascade_cols == 0) {
+        return {};
+    }
+    ViewGrid grid;
+    grid.rows = holes.cascade_rows;
+    grid.cols = holes.cascade_cols;
+    std::vector<std::uint32_t> corners;
+    for (const std::uint32_t row : {0U, grid.rows - 1}) {
+        for (const std::uint32_t col : {0U, grid.cols - 1}) {
+            const std::uint32_t index = index_of(positions, lattice_position(grid, row, col));
+            if (std::ranges::find(corners, index) == corners.end()) {
+                corners.push_back(index);
+            }
+        }
+    }
+    return corners;
 }
 
 } // namespace
 
+/// Holes of one set of views over frames. A channel has few such sets; those not used for longest are forgotten.
+struct ViewHistory {
+    ViewRequest request; ///< with the corner views
+    std::uint64_t pose_count = 0;
+    std::uint64_t last_use = 0;
+    HoleHistory holes;
+};
+
 struct GridRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s);
 
-    void resize(const SourcePlanes& source, const ViewRequest& next);
-    void upload_cameras(const SourcePlanes& source);
+    void resize(const SourcePlanes& source);
+    void upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners);
     void record_visibility();
     void record_interleave(const SourcePlanes& source);
     void record_reproject(const FrameHeader& header);
-    void record_lists(const FrameHeader& header);
+    void record_layers(const FrameHeader& header);
+    HoleFiller::Batch make_batch(const FrameHeader& header, const ViewRequest& asked);
+    ViewHistory& find_history();
     void record_tone_map(const FrameHeader& header);
-    Views download(const FrameHeader& header) const;
+    Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
     DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
 
@@ -48,11 +82,16 @@ struct GridRenderer::State {
     gpu::Kernel interleave_kernel;
     gpu::Kernel reproject_kernel;
     gpu::Kernel finish_kernel;
-    gpu::Kernel holes_kernel;
     gpu::Kernel layers_kernel;
     gpu::Kernel tone_map_kernel;
 
-    ViewRequest request;
+    HoleFiller filler;
+
+    ViewRequest request;    ///< with the corner views of the hole cascade
+    std::size_t wanted = 0; ///< views that were asked for; they come first
+    std::vector<std::unique_ptr<ViewHistory>> histories;
+    std::uint64_t use_count = 0;
+    HoleCounts hole_counts;
     std::vector<Camera> view_cameras;
     std::uint32_t source_texels = 0; ///< of all pages
     std::uint32_t page_count = 1;
@@ -71,7 +110,6 @@ struct GridRenderer::State {
     gpu::Buffer visibility;
     gpu::Buffer layers;
     gpu::Buffer radiance;
-    gpu::Buffer holes;
     gpu::Buffer layer_pixels;
     gpu::Buffer rgb8;
 };
@@ -85,13 +123,42 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
       reproject_kernel(
           make_scene_kernel(d, s, KernelId::kReproject, sizeof(shared::ReprojectParams), {&source_layout})),
       finish_kernel(make_plain_kernel(d, KernelId::kFinishList, sizeof(shared::FinishListParams))),
-      holes_kernel(make_scene_kernel(d, s, KernelId::kTraceHoles, sizeof(shared::TraceListParams))),
       layers_kernel(
           make_scene_kernel(d, s, KernelId::kCompositeLayers, sizeof(shared::TraceListParams), {&source_layout})),
-      tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))) {}
+      tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))),
+      filler(d, s, source_layout) {}
 
-void GridRenderer::State::resize(const SourcePlanes& source, const ViewRequest& next) {
-    request = next;
+ViewHistory& GridRenderer::State::find_history() {
+    constexpr std::size_t kMaxHistories = 4;
+    auto found = std::ranges::find_if(histories, [&](const auto& history) { return history->request == request; });
+    if (found == histories.end()) {
+        if (histories.size() == kMaxHistories) {
+            histories.erase(std::ranges::min_element(histories, {}, [](const auto& h) { return h->last_use; }));
+        }
+        histories.push_back(std::make_unique<ViewHistory>());
+        found = histories.end() - 1;
+        (*found)->request = request;
+    }
+    (*found)->last_use = ++use_count;
+    return **found;
+}
+
+HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, const ViewRequest& asked) {
+    ViewRequest next = asked;
+    HoleFiller::Batch batch{.width = asked.width_px, .height = asked.height_px};
+    batch.corners = choose_corners(header.settings.holes, next.positions);
+    batch.view_count = static_cast<std::uint32_t>(next.positions.size());
+    request = std::move(next);
+    ViewHistory& history = find_history();
+    batch.history = &history.holes;
+    batch.has_history = !header.cut && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
+    history.holes.current = 1 - history.holes.current;
+    history.pose_count = scene.pose_count();
+    wanted = asked.positions.size();
+    return batch;
+}
+
+void GridRenderer::State::resize(const SourcePlanes& source) {
     page_count = source.page_count();
     if (source.texel_count() != source_texels) {
         source_texels = source.texel_count();
@@ -114,12 +181,11 @@ void GridRenderer::State::resize(const SourcePlanes& source, const ViewRequest& 
     visibility = gpu::Buffer(device, pixels * 8);
     layers = gpu::Buffer(device, scene.has_blend() ? pixels * 16 : 16);
     radiance = gpu::Buffer(device, pixels * 8);
-    holes = gpu::Buffer(device, pixels * 4);
     layer_pixels = gpu::Buffer(device, scene.has_blend() ? pixels * 4 : 16);
     rgb8 = gpu::Buffer(device, pixels * 3);
 }
 
-void GridRenderer::State::upload_cameras(const SourcePlanes& source) {
+void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
     const FrameHeader& header = source.header();
     std::vector<shared::CameraRecord> camera_records{make_camera_record(source.camera())};
     std::vector<shared::ViewRecord> view_records;
@@ -128,7 +194,10 @@ void GridRenderer::State::upload_cameras(const SourcePlanes& source) {
         view_cameras.push_back(view_camera(header.source, request.geometry, position, request.fovy_rad,
                                            request.width_px, request.height_px));
         camera_records.push_back(make_camera_record(view_cameras.back()));
-        view_records.push_back({view_seed(header, position), 0});
+        view_records.push_back({view_seed(header, position), 0U});
+    }
+    for (const std::uint32_t corner : corners) {
+        view_records[corner].is_corner = 1;
     }
     gpu::write_buffer(device, cameras, std::as_bytes(std::span(camera_records)));
     gpu::write_buffer(device, views, std::as_bytes(std::span(view_records)));
@@ -169,7 +238,7 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.visibility = visibility.address();
     params.layers = layers.address();
     params.radiance = radiance.address();
-    params.holes = holes.address();
+    params.holes = filler.map().address();
     params.layer_pixels = layer_pixels.address();
     params.counters = counters.address();
     params.width = request.width_px;
@@ -180,18 +249,16 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
                       {gpu::groups_for(params.width, shared::kLinearGroup), params.height, params.view_count});
     recorder.barrier();
-    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address()}, {1, 1, 1});
-    recorder.barrier();
 }
 
-// One compacted list over all views and one indirect dispatch, for holes and then for BLEND surfaces.
-void GridRenderer::State::record_lists(const FrameHeader& header) {
+// One compacted list over all views and one indirect dispatch.
+void GridRenderer::State::record_layers(const FrameHeader& header) {
     shared::TraceListParams params{};
     params.cameras = cameras.address();
     params.visibility = visibility.address();
     params.layers = layers.address();
     params.radiance = radiance.address();
-    params.list = holes.address();
+    params.list = layer_pixels.address();
     params.counters = counters.address();
     params.views = views.address();
     params.width = request.width_px;
@@ -202,16 +269,12 @@ void GridRenderer::State::record_lists(const FrameHeader& header) {
     params.max_indirect = max_indirect(header.settings);
     params.page_count = page_count;
     params.settings = reproject_settings(header.settings.reprojection);
-    recorder.stage("holes");
-    recorder.dispatch_indirect(holes_kernel, {&scene.bindings()}, params, counters, shared::kCounterHoleGroups * 4);
+    recorder.stage("layers");
+    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers}, {1, 1, 1});
     recorder.barrier();
-    if (scene.has_blend()) {
-        params.list = layer_pixels.address();
-        recorder.stage("layers");
-        recorder.dispatch_indirect(layers_kernel, {&scene.bindings(), &source_set}, params, counters,
-                                   shared::kCounterLayerGroups * 4);
-        recorder.barrier();
-    }
+    recorder.dispatch_indirect(layers_kernel, {&scene.bindings(), &source_set}, params, counters,
+                               (shared::kCounterLayers + 1) * 4);
+    recorder.barrier();
 }
 
 void GridRenderer::State::record_tone_map(const FrameHeader& header) {
@@ -232,17 +295,15 @@ DiscardCounts GridRenderer::State::discards(const std::vector<std::uint32_t>& va
             values[base + shared::kDiscardPlane], values[base + shared::kDiscardNormal]};
 }
 
-Views GridRenderer::State::download(const FrameHeader& header) const {
-    const auto counts = gpu::read_buffer_as<std::uint32_t>(device, counters, counters.size_bytes() / 4);
+Views GridRenderer::State::download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const {
     Views result{header, {}};
-    result.views.reserve(view_count());
-    for (std::size_t i = 0; i < request.positions.size(); ++i) {
+    result.views.reserve(wanted);
+    for (std::size_t i = 0; i < wanted; ++i) {
         Plane image{PlaneSemantic::kColour, PlaneFormat::kRgb8, request.width_px, request.height_px, {}};
         image.bytes.resize(plane_bytes(image.format, image.width_px, image.height_px));
         gpu::read_buffer(device, rgb8, image.bytes, 3ULL * padded_pixels(request) * i);
         result.views.push_back({request.positions[i], std::move(image), discards(counts, i)});
     }
-    append_times(recorder, result.header.render_times);
     return result;
 }
 
@@ -254,26 +315,34 @@ GridRenderer::~GridRenderer() = default;
 Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& request) {
     FC_ASSERT(!request.positions.empty() && request.width_px > 0 && request.height_px > 0, "nothing to render");
     State& s = *state_;
-    s.resize(source, request);
-    s.upload_cameras(source);
+    FrameHeader header = source.header();
+    const HoleFiller::Batch batch = s.make_batch(header, request);
+    s.resize(source);
+    s.upload_cameras(source, batch.corners);
 
     s.recorder.fill(s.counters, 0);
+    s.filler.begin(s.recorder, batch, s.cameras);
     s.recorder.barrier();
     s.record_visibility();
     s.record_interleave(source);
-    s.record_reproject(source.header());
-    s.record_lists(source.header());
-    s.record_tone_map(source.header());
+    s.record_reproject(header);
+    s.filler.fill(s.recorder, header, {s.visibility, s.views, s.counters, s.radiance, s.source_set}, header.render_times);
+    if (s.scene.has_blend()) {
+        s.record_layers(header);
+    }
+    s.record_tone_map(header);
     s.recorder.submit();
 
-    const auto invalid = gpu::read_buffer_as<std::uint32_t>(s.device, s.counters, 1, shared::kCounterInvalidSamples * 4);
-    s.invalid_samples += invalid.front();
-    return s.download(source.header());
+    append_times(s.recorder, header.render_times);
+    const auto counts = gpu::read_buffer_as<std::uint32_t>(s.device, s.counters, s.counters.size_bytes() / 4);
+    s.invalid_samples += counts[shared::kCounterInvalidSamples];
+    s.hole_counts = HoleFiller::counts(counts);
+    return s.download(header, counts);
 }
 
 LinearView GridRenderer::linear_view(std::size_t index) const {
     const State& s = *state_;
-    FC_ASSERT(index < s.request.positions.size(), "no such view");
+    FC_ASSERT(index < s.wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
     const auto texels = gpu::read_buffer_as<glm::uvec2>(s.device, s.radiance, count,
                                                         8ULL * padded_pixels(s.request) * index);
@@ -288,11 +357,21 @@ LinearView GridRenderer::linear_view(std::size_t index) const {
 
 std::vector<float> GridRenderer::view_depth(std::size_t index) const {
     const State& s = *state_;
-    FC_ASSERT(index < s.request.positions.size(), "no such view");
+    FC_ASSERT(index < s.wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
     const auto seen = gpu::read_buffer_as<glm::uvec2>(s.device, s.visibility, count,
                                                       8ULL * padded_pixels(s.request) * index);
     return depth_of_visibility(s.scene, s.view_cameras[index], seen);
+}
+
+std::vector<bool> GridRenderer::hole_mask(std::size_t index) const {
+    const State& s = *state_;
+    FC_ASSERT(index < s.wanted, "no such view");
+    return s.filler.mask(static_cast<std::uint32_t>(index));
+}
+
+HoleCounts GridRenderer::hole_counts() const {
+    return state_->hole_counts;
 }
 
 std::uint64_t GridRenderer::invalid_sample_count() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/lightfield/views.h"
+#include "core/render/hole_filler.h"
 #include "core/render/source_planes.h"
 #include "core/scene/gpu_scene.h"
 
@@ -29,7 +30,7 @@ struct LinearView {
 
 /// Makes finished views from a source frame and the scene: visibility of all views, backward reprojection of the
 /// illumination with footprint-scaled tests, remodulation with the target's own material, path tracing of what was
-/// discarded (one compacted list, one indirect dispatch), tone mapping. The same class on server and clients.
+/// discarded and could not be had otherwise (HoleFiller), tone mapping. The same class on server and clients.
 class GridRenderer {
 public:
     GridRenderer(const gpu::Device& device, const scene::GpuScene& scene);
@@ -44,6 +45,12 @@ public:
 
     /// View depth (metres, infinity: nothing) of view `index` of the last render(), for tests and benchmarks.
     std::vector<float> view_depth(std::size_t index) const;
+
+    /// Which pixels of view `index` of the last render() the source did not show, row-major.
+    std::vector<bool> hole_mask(std::size_t index) const;
+
+    /// Of the last render(), over all views, those of the cascade's corners included.
+    HoleCounts hole_counts() const;
 
     std::uint64_t invalid_sample_count() const; ///< must stay 0
 

@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/kernels.h"
 
+#include "shaders/cascade_holes.spv.h"
+#include "shaders/composite_layers_bvh.spv.h"
+#include "shaders/composite_layers_rayquery.spv.h"
+#include "shaders/count_holes.spv.h"
+#include "shaders/filter_holes.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
+#include "shaders/list_holes.spv.h"
 #include "shaders/pack_source.spv.h"
 #include "shaders/reproject.spv.h"
+#include "shaders/scan_holes.spv.h"
+#include "shaders/shade_holes.spv.h"
 #include "shaders/source_surfaces.spv.h"
+#include "shaders/start_holes.spv.h"
 #include "shaders/svgf_atrous.spv.h"
 #include "shaders/svgf_variance.spv.h"
 #include "shaders/temporal.spv.h"
 #include "shaders/tone_map.spv.h"
 #include "shaders/trace_holes_bvh.spv.h"
 #include "shaders/trace_holes_rayquery.spv.h"
-#include "shaders/composite_layers_bvh.spv.h"
-#include "shaders/composite_layers_rayquery.spv.h"
 #include "shaders/trace_reference_bvh.spv.h"
 #include "shaders/trace_reference_rayquery.spv.h"
 #include "shaders/trace_source_bvh.spv.h"
@@ -32,6 +39,20 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return gpu::KernelCode{name, bvh ? own : query};
     };
     switch (id) {
+    case KernelId::kCascadeHoles:
+        return {"cascade_holes", cascade_holes_spv};
+    case KernelId::kCountHoles:
+        return {"count_holes", count_holes_spv};
+    case KernelId::kFilterHoles:
+        return {"filter_holes", filter_holes_spv};
+    case KernelId::kListHoles:
+        return {"list_holes", list_holes_spv};
+    case KernelId::kScanHoles:
+        return {"scan_holes", scan_holes_spv};
+    case KernelId::kShadeHoles:
+        return {"shade_holes", shade_holes_spv};
+    case KernelId::kStartHoles:
+        return {"start_holes", start_holes_spv};
     case KernelId::kFinishList:
         return {"finish_list", finish_list_spv};
     case KernelId::kInterleaveSource:

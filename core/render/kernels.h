@@ -8,11 +8,18 @@ namespace fieldcast::render {
 
 /// The embedded kernels (shaders/*.comp).
 enum class KernelId {
+    kCascadeHoles,
+    kCountHoles,
+    kFilterHoles,
     kFinishList,
     kInterleaveSource,
+    kListHoles,
     kPackSource,
     kReproject,
+    kScanHoles,
+    kShadeHoles,
     kSourceSurfaces,
+    kStartHoles,
     kSvgfAtrous,
     kSvgfVariance,
     kTemporal,

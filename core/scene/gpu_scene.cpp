@@ -78,6 +78,7 @@ struct GpuScene::State {
     const Scene& scene;
     Traversal traversal;
     ScenePose pose;
+    std::uint64_t pose_count = 0;
     TextureArrays textures;
     SceneRecords records;
     LightTables lights;
@@ -152,6 +153,7 @@ GpuScene::GpuScene(const gpu::Device& device, const Scene& scene, Traversal trav
 GpuScene::~GpuScene() = default;
 
 void GpuScene::pose(std::int64_t time_ns, bool cut) {
+    ++state_->pose_count;
     ScenePose next = pose_scene(state_->scene, time_ns);
     const bool moves = !state_->scene.channels.empty();
     std::swap(state_->pose, next); // `next` is now the pose before
@@ -161,6 +163,10 @@ void GpuScene::pose(std::int64_t time_ns, bool cut) {
     state_->upload_instances(cut ? state_->pose : next);
     state_->upload_lights();
     state_->acceleration.update(state_->pose);
+}
+
+std::uint64_t GpuScene::pose_count() const {
+    return state_->pose_count;
 }
 
 const ScenePose& GpuScene::current_pose() const {

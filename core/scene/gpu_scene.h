@@ -29,6 +29,9 @@ public:
     /// with `cut` there is no motion. Not while submitted work uses the scene.
     void pose(std::int64_t time_ns, bool cut);
 
+    /// Calls of pose() so far: who keeps a history can tell whether it is of the pose before.
+    std::uint64_t pose_count() const;
+
     const ScenePose& current_pose() const;
     const Scene& scene() const;
     Traversal traversal() const;

@@ -85,6 +85,23 @@ Decoded<void> check_floats(const RenderSettings& settings) {
     return {};
 }
 
+void to_proto(const HoleFilling& holes, v1::HoleFilling& message) {
+    message.set_previous_frame(holes.previous_frame);
+    message.set_isolated(holes.isolated);
+    message.set_cascade_rows(holes.cascade_rows);
+    message.set_cascade_cols(holes.cascade_cols);
+    message.set_end_in_source(holes.end_in_source);
+    message.set_denoise(holes.denoise);
+}
+
+Decoded<HoleFilling> from_proto(const v1::HoleFilling& message) {
+    if (message.cascade_rows() > kMaxViews || message.cascade_cols() > kMaxViews) {
+        return decode_error("settings.holes: at most " + std::to_string(kMaxViews) + " cascade_rows and cascade_cols");
+    }
+    return HoleFilling{message.previous_frame(), message.isolated(),      message.cascade_rows(),
+                       message.cascade_cols(),   message.end_in_source(), message.denoise()};
+}
+
 } // namespace
 
 void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
@@ -102,6 +119,7 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     thresholds.set_tangential_footprints(settings.reprojection.tangential_footprints);
     thresholds.set_min_normal_cos(settings.reprojection.min_normal_cos);
     thresholds.set_min_weight(settings.reprojection.min_weight);
+    to_proto(settings.holes, *message.mutable_holes());
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
@@ -128,6 +146,11 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     settings.exposure = message.exposure();
     settings.reprojection = {message.reprojection().plane_footprints(), message.reprojection().tangential_footprints(),
                              message.reprojection().min_normal_cos(), message.reprojection().min_weight()};
+    const auto holes = from_proto(message.holes());
+    if (!holes) {
+        return tl::unexpected(holes.error());
+    }
+    settings.holes = *holes;
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }

@@ -130,6 +130,16 @@ void read_listen(const FlagText& text, Config& config, Problems& problems) {
     config.listen = {.host = text.listen.substr(0, colon), .port = *port};
 }
 
+void read_holes(const FlagText& text, Config& config, Problems& problems) { // after the grid
+    const auto holes = parse_hole_filling(text.holes, config.largest_grid.rows, config.largest_grid.cols);
+    if (!holes) {
+        problems.push_back("--holes " + text.holes +
+                           ": write all, none, or a list of previous,isolated,cascade,source,denoise");
+        return;
+    }
+    config.settings.holes = *holes;
+}
+
 } // namespace
 
 void read_text(const FlagText& text, Config& config, Problems& problems) {
@@ -137,6 +147,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_sky(text, config, problems);
     read_guard_band(text, config, problems);
     read_lattice(text, config, problems);
+    read_holes(text, config, problems);
     read_listen(text, config, problems);
     if (!text.environment.empty()) {
         config.environment = text.environment;

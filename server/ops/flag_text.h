@@ -19,6 +19,7 @@ struct FlagText {
     std::string largest_grid = "6x6";
     bool lacks_next_event_estimation = false;
     std::string denoiser = "svgf";
+    std::string holes = "all";
     std::string exposure = "auto";
     std::string tone_map = "srgb";
     std::string guard_band = "auto";

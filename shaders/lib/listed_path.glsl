@@ -5,39 +5,39 @@
 #include "lib/camera.glsl"
 #include "lib/path.glsl"
 #include "lib/views.glsl"
+#include "lib/visible_surface.glsl"
 
 // Seed of a pixel: never a position in a compacted list.
 uint pixel_seed(uint view_seed, uint x, uint y) {
     return hash_combine(view_seed, x | (y << 16));
 }
 
-Surface visible_surface(CameraRecord camera, vec2 position, Visibility seen, out vec3 direction, out float cone_width) {
-    direction = camera_direction(camera, position);
-    WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
-    vec3 at = intersect_plane(triangle, camera.origin, direction);
-    cone_width = at.z / camera.focal_px;
-    direction = normalize(direction);
-    return make_surface(triangle, at.xy, direction, cone_width);
-}
-
-vec3 trace_radiance(TraceListParams params, Surface s, vec3 direction, float cone_width, float cone_spread, uint seed) {
+// Mean illumination of a surface over `samples` paths. `counters`: kCounterInvalidSamples.
+Illumination trace_illumination(PathSettings settings, uint samples, UintBuffer counters, Surface s, vec3 direction,
+                                float cone_width, float cone_spread, uint seed) {
     SceneInfo info = load_scene_info();
-    PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
-                                         params.max_indirect);
     Illumination sum = Illumination(vec3(0.0), vec3(0.0));
-    for (uint i = 0u; i < params.samples_per_pixel; ++i) {
+    for (uint i = 0u; i < samples; ++i) {
         Sampler rng = make_sampler(seed, i);
         Illumination one = trace_path(info, settings, s, direction, cone_width, cone_spread, rng);
         if (is_finite(one.diffuse + one.specular)) {
             sum.diffuse += one.diffuse;
             sum.specular += one.specular;
         } else {
-            atomicAdd(params.counters.at[kCounterInvalidSamples], 1u);
+            atomicAdd(counters.at[kCounterInvalidSamples], 1u);
         }
     }
-    float scale = 1.0 / float(params.samples_per_pixel);
+    float scale = 1.0 / float(samples);
+    return Illumination(sum.diffuse * scale, sum.specular * scale);
+}
+
+vec3 trace_radiance(TraceListParams params, Surface s, vec3 direction, float cone_width, float cone_spread, uint seed) {
+    PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
+                                         params.max_indirect);
+    Illumination light = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,
+                                            cone_spread, seed);
     Bsdf b = make_bsdf(s, direction);
-    return s.emission + (sum.diffuse * b.diffuse_modulation + sum.specular * b.specular_modulation) * scale;
+    return s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
 }
 
 #endif

@@ -6,6 +6,9 @@
 #define FIELDCAST_LIB_PATH
 #include "lib/lights.glsl"
 #include "lib/traversal.glsl"
+#ifdef PATH_ENDS_IN_SOURCE
+#include "lib/source_light.glsl"
+#endif
 
 struct PathSettings {
     uint max_bounces;
@@ -136,14 +139,20 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         uint alpha_seed = hash_combine(rng.state, bounce); // every segment decides anew what BLEND surfaces it meets
         Hit hit = trace_closest(path_origin(s, direction), direction, 0.0, 1e30, kTraceStochastic, alpha_seed);
         vec3 arriving;
-        bool escaped = hit.instance == kNoInstance;
-        if (escaped) {
+        bool ends = hit.instance == kNoInstance;
+        if (ends) {
             arriving = environment_light(info, settings, normal, direction, value.pdf);
         } else {
             cone_spread += 0.1 * sqrt(b.alpha);
             cone_width_m += cone_spread * hit.t;
             s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width_m);
             arriving = emitted_light(info, settings, s, direction, hit.t, value.pdf);
+            b = make_bsdf(s, direction);
+#ifdef PATH_ENDS_IN_SOURCE
+            vec3 reflected;
+            ends = light_in_source(s, hit.instance, b, direction, hit.t, reflected);
+            arriving += reflected;
+#endif
         }
         if (bounce == 0u) {
             result.diffuse += first_diffuse * arriving;
@@ -151,10 +160,9 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         } else {
             indirect += throughput * arriving;
         }
-        if (escaped) {
+        if (ends) {
             break;
         }
-        b = make_bsdf(s, direction);
     }
     indirect = limit_luminance(indirect, settings.max_indirect);
     result.diffuse += first_diffuse * indirect;

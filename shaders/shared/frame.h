@@ -173,18 +173,21 @@ struct InterleaveParams {
 // What one target view needs besides its camera.
 struct ViewRecord {
     uint seed;                // hash of frame seed and lattice position
-    uint unused;
+    uint is_corner;           // of the hole cascade
 };
 SHARED_BUFFER(ViewBuffer, ViewRecord);
 
-// Counters of a batch of views: hole and layer lists, then kDiscard… per view.
-const uint kCounterHoles = 0;           // followed by the group counts of the indirect dispatch
-const uint kCounterHoleGroups = 1;      // x, y, z
-const uint kCounterLayers = 4;
-const uint kCounterLayerGroups = 5;     // x, y, z
-const uint kCounterInvalidSamples = 8;
-const uint kCounterLayerPaths = 9;      // BLEND surfaces that had to be path traced
-const uint kCounterDiscards = 16;       // 4 per view
+// Counters of a batch of views: lists (length, then the group counts of an indirect dispatch), events, kDiscard… per view.
+const uint kCounterHoles = 0;
+const uint kCounterLayers = 4;          // pixels behind BLEND surfaces
+const uint kCounterFirstHoles = 8;      // holes to be traced first: of corner views, or all of them
+const uint kCounterInnerHoles = 12;     // holes that corner views may fill
+const uint kCounterRestHoles = 16;      // those that they did not
+const uint kCounterInvalidSamples = 20;
+const uint kCounterLayerPaths = 21;     // BLEND surfaces that had to be path traced
+const uint kCounterRememberedHoles = 22; // filled from the frame before
+const uint kCounterIsolatedHoles = 23;  // filled from around their place in the source
+const uint kCounterDiscards = 32;       // 4 per view
 const uint kDiscardFrustum = 0;
 const uint kDiscardId = 1;
 const uint kDiscardPlane = 2;
@@ -203,7 +206,7 @@ struct ReprojectParams {
     VisibilityBuffer visibility; // of the views
     VisibilityBuffer layers;
     Uvec2Buffer radiance;        // out: linear radiance, half floats
-    UintBuffer holes;            // out: pixel indices over all views
+    UintBuffer holes;            // in/out: the map of shared/holes.h
     UintBuffer layer_pixels;     // out
     UintBuffer counters;
     uint width;
@@ -217,9 +220,10 @@ const uint kReprojectIllumination = 1; // RG32UI: diffuse, specular (R11G11B10F)
 // finish_list.comp: group counts of an indirect dispatch from a list's length.
 struct FinishListParams {
     UintBuffer counters;
+    uint list;                   // kCounter… of its length
 };
 
-// trace_holes.comp and composite_layers.comp: the listed pixels. The latter reads set 1: kReproject….
+// composite_layers.comp: the pixels behind BLEND surfaces. Reads set 1: kReproject….
 struct TraceListParams {
     CameraBuffer cameras;        // the source, then the views
     VisibilityBuffer visibility;
@@ -234,8 +238,8 @@ struct TraceListParams {
     uint max_bounces;
     uint flags;
     float max_indirect;
-    uint page_count;             // of the source; composite_layers.comp only
-    ReprojectSettings settings;  // composite_layers.comp only
+    uint page_count;             // of the source
+    ReprojectSettings settings;
 };
 
 // tone_map.comp: linear radiance to packed RGB8; one invocation makes four pixels (three words).

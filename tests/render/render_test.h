@@ -38,8 +38,23 @@ struct PathTracing {
 
 /// Tests of renderers on the best device of this machine; skips without one, fails on validation messages.
 class RenderTest : public gpu::GpuTest {
+public:
+    /// Shows a scene in one renderer of each kind.
+    struct Stage {
+        Stage(const gpu::Device& device, scene::Scene shown, scene::Traversal traversal)
+            : scene(std::move(shown)), gpu_scene(device, scene, traversal), source(device, gpu_scene),
+              grid(device, gpu_scene), reference(device, gpu_scene) {}
+        scene::Scene scene;
+        scene::GpuScene gpu_scene;
+        SourceRenderer source;
+        GridRenderer grid;
+        ReferenceRenderer reference;
+    };
+
 protected:
     scene::Traversal traversal() const { return scene::choose_traversal(device(), "auto"); }
+
+    Stage stage(scene::Scene scene) const { return {device(), std::move(scene), traversal()}; }
 
     /// Path traces `camera` without reuse and without clamps. Fails on invalid samples.
     Estimate path_trace(const scene::Scene& scene, const Camera& camera, const PathTracing& options) const;

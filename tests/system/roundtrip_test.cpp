@@ -127,7 +127,9 @@ protected:
         server_ = std::make_unique<Program>(FIELDCAST_SERVER,
                                             std::vector<std::string>{"--scene", "scenes/atelier/atelier.gltf", "--size",
                                                                      "160x90", "--fps", "2", "--clock", "frames",
-                                                                     "--largest-grid", "3x3", "--listen", "127.0.0.1:0",
+                                                                     "--largest-grid", "3x3", "--holes",
+                                                                     "isolated,cascade,source,denoise", // no history of views
+                                                                     "--listen", "127.0.0.1:0",
                                                                      "--port-file", port_file},
                                             folder_ / "server.log");
         const auto deadline = std::chrono::steady_clock::now() + kLongestRun;

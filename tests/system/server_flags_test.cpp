@@ -57,6 +57,8 @@ TEST(Flags, ReadsEverything) {
                                 "--no-nee",
                                 "--denoiser",
                                 "none",
+                                "--holes",
+                                "cascade,denoise",
                                 "--exposure",
                                 "1.5",
                                 "--tone-map",
@@ -88,6 +90,7 @@ TEST(Flags, ReadsEverything) {
     EXPECT_EQ(config.settings.samples_per_pixel, 4U);
     EXPECT_FALSE(config.settings.next_event_estimation);
     EXPECT_EQ(config.settings.denoiser, Denoiser::kNone);
+    EXPECT_EQ(config.settings.holes, (HoleFilling{false, false, 4, 5, false, true}));
     EXPECT_EQ(config.settings.exposure, 1.5F);
     EXPECT_EQ(config.settings.tone_map, ToneMap::kAces);
     EXPECT_EQ(config.guard_band.bottom_px, 4U);
@@ -112,9 +115,9 @@ TEST(Flags, ReportsAllProblemsAtOnce) {
 TEST(Flags, ReportsTextItCannotRead) {
     const auto problems =
         read({"--scene", kFile, "--size", "big", "--sky", "1,2", "--exposure", "bright", "--denoiser", "magic",
-              "--listen", "here", "--guard-band", "1,2", "--channel", "nofile", "--clock", "sun"})
+              "--holes", "deep", "--listen", "here", "--guard-band", "1,2", "--channel", "nofile", "--clock", "sun"})
             .problems;
-    EXPECT_EQ(problems.size(), 8U);
+    EXPECT_EQ(problems.size(), 9U);
 }
 
 TEST(Flags, NeedsAScene) {

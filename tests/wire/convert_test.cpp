@@ -70,6 +70,7 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
         {"exposure", [](auto& m) { m.mutable_settings()->set_exposure(kInf); }},
         {"min_normal_cos",
          [](auto& m) { m.mutable_settings()->mutable_reprojection()->set_min_normal_cos(-2.0F); }},
+        {"cascade_rows", [](auto& m) { m.mutable_settings()->mutable_holes()->set_cascade_rows(73); }},
         {"layer_count", [](auto& m) { m.set_layer_count(1); }},
         {"render_times", [](auto& m) { m.mutable_render_times(0)->set_ms(std::nan("")); }},
         {"render_times", [](auto& m) { m.mutable_render_times(0)->set_stage(std::string(65, 'x')); }},

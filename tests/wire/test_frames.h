@@ -27,6 +27,7 @@ inline FrameHeader test_header(std::uint64_t frame_id, std::uint32_t width_px = 
     header.settings.tone_map = ToneMap::kAces;
     header.settings.exposure = 0.18F;
     header.settings.reprojection.min_weight = 0.0F;
+    header.settings.holes = {false, true, 6, 5, true, false};
     header.noise_frame = 17;
     header.render_times = {{"trace", 4.25}, {"denoise", 0.0}};
     return header;

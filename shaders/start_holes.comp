@@ -1,0 +1,108 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Stores the surfaces of holes and takes what is to be had without rays: the hole's own light of the frame before, and
+// for isolated holes the light of the same surface around their place in the source. Lists the others.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/holes.h"
+
+layout(local_size_x = kLinearGroup) in;
+layout(push_constant, scalar) uniform Push { HoleParams params; };
+
+#include "lib/holes.glsl"
+
+const float kSettledFrames = 4.0; // from then on a hole is traced in every fourth frame only
+const uint kIsolatedCount = 3u;   // holes of a tile of 32 pixels that are still isolated
+
+// Where the surface point was in the frame before, and its plane there.
+Target past_target(Target now, Visibility seen, vec3 weights, uvec3 vertices, CameraRecord before) {
+    mat4x3 m = load_previous_transform(seen.instance);
+    vec3 corner0 = load_vertex(vertices.x).xyz;
+    vec3 corner1 = load_vertex(vertices.y).xyz;
+    vec3 corner2 = load_vertex(vertices.z).xyz;
+    Target past = now;
+    past.position = m * vec4(corner0 * weights.x + corner1 * weights.y + corner2 * weights.z, 1.0);
+    vec3 normal = cross(m * vec4(corner1 - corner0, 0.0), m * vec4(corner2 - corner0, 0.0));
+    past.geometric_normal = normal / max(length(normal), 1e-30);
+    return past;
+}
+
+HoleSum remember(uint view, Target target, Visibility seen, vec3 weights, uvec3 vertices) {
+    HoleFrame frame = params.frames.at[1];
+    CameraRecord before = frame.cameras.at[view + 1u];
+    Target past = past_target(target, seen, weights, vertices, before);
+    vec3 p = camera_project(before, past.position);
+    HoleSum sum = HoleSum(vec3(0.0), vec3(0.0), 0.0, 0.0);
+    if (p.z > 0.0) {
+        gather_holes_around(frame, view, before, p.xy, past, sum);
+    }
+    return sum;
+}
+
+bool is_isolated(uint view, uvec2 at) {
+    uint word = params.frames.at[0].words.at[hole_bit(view, at, params.width, params.height).word];
+    return uint(bitCount(word)) <= kIsolatedCount;
+}
+
+// Light of the same surface within three pixels of the hole's place in the source.
+Gathered gather_wide(Target target) {
+    CameraRecord source = params.frames.at[0].cameras.at[0];
+    vec3 p = camera_project(source, target.position);
+    Gathered sum = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
+    ivec2 nearest = ivec2(floor(p.xy));
+    for (int i = 0; p.z > 0.0 && i < 49; ++i) {
+        ivec2 at = nearest + ivec2(i % 7 - 3, i / 7 - 3);
+        vec2 d = vec2(at) + 0.5 - p.xy;
+        gather(source, 0u, at, exp(-0.5 * dot(d, d)), target, 3.0, sum);
+    }
+    return sum;
+}
+
+void list_hole(uint number, uint view) {
+    bool is_first = (params.stages & kHolesCascade) == 0u || params.views.at[view].is_corner != 0u;
+    uint counter = is_first ? kCounterFirstHoles : kCounterInnerHoles;
+    uint slot = atomicAdd(params.counters.at[counter], 1u);
+    params.lists.at[(is_first ? 0u : params.hole_count) + slot] = number;
+}
+
+void main() {
+    uint number = linear_index();
+    if (number >= params.hole_count) {
+        return;
+    }
+    HoleFrame frame = params.frames.at[0];
+    uint index = frame.pixels.at[number];
+    ViewPixel pixel = locate_pixel(index, params.width, params.height);
+    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
+    Visibility seen = params.visibility.at[index];
+    vec3 direction = camera_direction(camera, vec2(pixel.x, pixel.y) + 0.5);
+    WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
+    vec3 at = intersect_plane(triangle, camera.origin, direction);
+    Surface s = make_surface(triangle, at.xy, normalize(direction), at.z / camera.focal_px);
+    uvec4 surface = uvec4(floatBitsToUint(at.z), pack_normal(s.normal), pack_normal(s.geometric_normal),
+                          (seen.instance << 12) | s.material);
+    frame.surfaces.at[number] = surface;
+
+    Target target = stored_target(surface, camera, vec2(pixel.x, pixel.y) + 0.5);
+    HoleLight light = HoleLight(vec3(0.0), vec3(0.0), 0.0);
+    if ((params.stages & kHolesPreviousFrame) != 0u) {
+        HoleSum past = remember(pixel.view, target, seen, vec3(1.0 - at.x - at.y, at.xy), triangle.vertices);
+        if (past.weight >= params.settings.min_weight) {
+            light = mean_light(past);
+        }
+    }
+    bool is_filled = light.frames >= kSettledFrames && ((pixel.x + 2u * pixel.y + params.noise_frame) & 3u) != 0u;
+    if (is_filled) {
+        atomicAdd(params.counters.at[kCounterRememberedHoles], 1u);
+    } else if ((params.stages & kHolesIsolated) != 0u && is_isolated(pixel.view, uvec2(pixel.x, pixel.y))) {
+        Gathered around = gather_wide(target);
+        is_filled = around.weight >= 0.25;
+        if (is_filled) {
+            light = HoleLight(around.diffuse / around.weight, around.specular / around.weight, 1.0);
+            atomicAdd(params.counters.at[kCounterIsolatedHoles], 1u);
+        }
+    }
+    frame.light.at[number] = pack_hole_light(light);
+    if (!is_filled) {
+        list_hole(number, pixel.view);
+    }
+}
