@@ -17,4 +17,10 @@ void add_frame_command(CLI::App& app);
 /// What the stages of hole filling save and cost.
 void add_holes_command(CLI::App& app);
 
+/// Errors of views against references (the paper's table 1).
+void add_quality_command(CLI::App& app);
+
+/// The references of `quality`.
+void add_reference_command(CLI::App& app);
+
 } // namespace fieldcast::bench

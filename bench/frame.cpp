@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench frame`: where the time of one frame goes, stage by stage (the paper's figure 3).
 #include "bench/commands.h"
-#include "bench/measure.h"
+#include "bench/light_field_run.h"
 #include "core/base/error.h"
 #include "core/image/image_file.h"
-#include "core/render/setup.h"
-#include "core/render/source_renderer.h"
-#include "core/scene/gltf_loader.h"
 
 #include <cmath>
 #include <filesystem>
@@ -72,114 +69,28 @@ std::uint64_t surface_pixels(const render::SourcePlanes& planes) {
     return count;
 }
 
-/// Renders frames of one scene and grid, one after the other.
-class FrameRun {
-public:
-    FrameRun(const gpu::Device& device, const FrameOptions& options)
-        : options_(options), size_(parse_size("--size", options.size)), scene_(load(options)),
-          camera_(find_camera(scene_)),
-          gpu_scene_(device, scene_, scene::choose_traversal(device, options.traversal)),
-          source_renderer_(device, gpu_scene_), grid_renderer_(device, gpu_scene_) {
-        if (camera_ == nullptr) {
-            throw UserError(options.scene + ": has no camera");
-        }
-        choose_grid();
-        header_.settings = options.settings;
-        choose_holes();
-        pose(0);
-        if (options.guard_band) {
-            guard_band_ = render::measure_guard_band(device, gpu_scene_, header_.source, grid_);
-            header_.guard_band = guard_band_.band;
-        }
-        header_.settings.exposure = static_cast<float>(options.exposure);
-        if (options.exposure <= 0.0) {
-            header_.settings.exposure = 1.0F;
-            header_.settings.exposure = render::auto_exposure(grid_renderer_, source_renderer_.render(header_));
-        }
+FrameSample measure(LightFieldScene& scene, LightFieldRun& run, std::uint32_t frame, Views& views) {
+    scene.pose(frame);
+    views = run.render(frame, lattice_positions(scene.grid()));
+    FrameSample sample{.stages = views.header.render_times};
+    const double spp = views.header.settings.samples_per_pixel;
+    sample.source_paths = static_cast<double>(surface_pixels(run.source())) * spp;
+    for (const View& view : views.views) {
+        sample.hole_pixels += view.discards.total();
     }
+    sample.hole_paths = static_cast<double>(run.grid_renderer().hole_counts().traced) * spp;
+    sample.synthesised_pixels =
+        static_cast<double>(scene.grid().view_count() - 1) * scene.size().width_px * scene.size().height_px;
+    return sample;
+}
 
-    FrameSample render(std::uint32_t frame) {
-        pose(frame);
-        const render::SourcePlanes& planes = source_renderer_.render(header_);
-        const render::ViewRequest request{grid_.geometry, vertical_fov(header_.source), size_.width_px, size_.height_px,
-                                          lattice_positions(grid_)};
-        views_ = grid_renderer_.render(planes, request);
-        FrameSample sample{.stages = views_.header.render_times};
-        const double spp = header_.settings.samples_per_pixel;
-        sample.source_paths = static_cast<double>(surface_pixels(planes)) * spp;
-        for (const View& view : views_.views) {
-            sample.hole_pixels += view.discards.total();
-        }
-        sample.hole_paths = static_cast<double>(grid_renderer_.hole_counts().traced) * spp;
-        sample.synthesised_pixels = static_cast<double>(grid_.view_count() - 1) * size_.width_px * size_.height_px;
-        return sample;
+void write_views(const std::filesystem::path& folder, const ViewGrid& grid, const Views& views) {
+    std::filesystem::create_directories(folder);
+    for (std::size_t i = 0; i < views.views.size(); ++i) {
+        const std::string name = std::to_string(i / grid.cols) + "_" + std::to_string(i % grid.cols);
+        image::write_png(folder / ("view_" + name + ".png"), views.views[i].image);
     }
-
-    void write_views(const std::filesystem::path& folder) const {
-        std::filesystem::create_directories(folder);
-        for (std::size_t i = 0; i < views_.views.size(); ++i) {
-            const std::string name = std::to_string(i / grid_.cols) + "_" + std::to_string(i % grid_.cols);
-            image::write_png(folder / ("view_" + name + ".png"), views_.views[i].image);
-        }
-    }
-
-    const GuardBandChoice& guard_band() const { return guard_band_; }
-    std::uint64_t invalid_samples() const {
-        return source_renderer_.invalid_sample_count() + grid_renderer_.invalid_sample_count();
-    }
-
-private:
-    static scene::Scene load(const FrameOptions& options) {
-        scene::LoadOptions load;
-        if (!options.environment.empty()) {
-            load.environment = options.environment;
-        }
-        return scene::load_scene(options.scene, load);
-    }
-
-    void choose_grid() {
-        const std::optional<ViewGrid> parsed = parse_grid(options_.grid);
-        if (!parsed) {
-            throw UserError("--grid " + options_.grid + ": expected ROWSxCOLUMNS");
-        }
-        grid_ = *parsed;
-        const float default_m = camera_->spacing_m.value_or(0.03F);
-        grid_.geometry.spacing_m = glm::vec2(options_.spacing_m > 0.0 ? static_cast<float>(options_.spacing_m) : default_m);
-        if (const auto problem = grid_problem(grid_)) {
-            throw UserError("--grid: " + *problem);
-        }
-    }
-
-    void choose_holes() {
-        const auto holes = parse_hole_filling(options_.holes, grid_.rows, grid_.cols);
-        if (!holes) {
-            throw UserError("--holes " + options_.holes +
-                            ": expected all, none or a list of previous,isolated,cascade,source,denoise");
-        }
-        header_.settings.holes = *holes;
-    }
-
-    void pose(std::uint32_t frame) {
-        header_.frame_id = frame;
-        header_.noise_frame = frame;
-        header_.scene_time_ns = static_cast<std::int64_t>(frame) * 1'000'000'000 / 30;
-        header_.cut = frame == 0;
-        gpu_scene_.pose(header_.scene_time_ns, header_.cut);
-        header_.source = render::source_camera(gpu_scene_, *camera_, size_.width_px, size_.height_px);
-    }
-
-    FrameOptions options_;
-    Size size_;
-    scene::Scene scene_;
-    const scene::CameraNode* camera_;
-    scene::GpuScene gpu_scene_;
-    render::SourceRenderer source_renderer_;
-    render::GridRenderer grid_renderer_;
-    ViewGrid grid_;
-    FrameHeader header_;
-    GuardBandChoice guard_band_;
-    Views views_;
-};
+}
 
 nlohmann::ordered_json summarise(const gpu::Device& device, const FrameOptions& options,
                                  const std::vector<FrameSample>& samples) {
@@ -230,7 +141,13 @@ void print_table(const nlohmann::ordered_json& json) {
 
 void run_frame(const FrameOptions& options) {
     const gpu::Device device({.name_contains = options.device});
-    FrameRun run(device, options);
+    LightFieldScene scene(device, {options.scene, options.environment, options.grid, options.spacing_m,
+                                   options.traversal, parse_size("--size", options.size)});
+    RenderSettings settings = options.settings;
+    settings.holes = parse_holes(options.holes, scene.grid());
+    settings.exposure = static_cast<float>(options.exposure);
+    LightFieldRun run(device, scene, settings, options.guard_band);
+    Views views;
     std::cout << device.info().name << ", " << device.info().driver << '\n'
               << options.scene << ", " << options.grid << " views of " << options.size << '\n';
     const GuardBandChoice& guard = run.guard_band();
@@ -239,7 +156,7 @@ void run_frame(const FrameOptions& options) {
               << std::llround(100.0 * guard.removed_share) << " % of the out-of-frustum pixels removed)\n";
     std::vector<FrameSample> samples;
     for (std::uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame) {
-        const FrameSample sample = run.render(frame);
+        const FrameSample sample = measure(scene, run, frame, views);
         if (frame >= options.warm_up) {
             samples.push_back(sample);
         }
@@ -255,7 +172,7 @@ void run_frame(const FrameOptions& options) {
         write_json(options.json, json);
     }
     if (!options.out.empty()) {
-        run.write_views(options.out);
+        write_views(options.out, scene.grid(), views);
     }
 }
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench holes`: what each stage of hole filling saves and what it does to the picture.
 #include "bench/commands.h"
-#include "bench/measure.h"
-#include "core/base/error.h"
-#include "core/render/setup.h"
-#include "core/render/source_renderer.h"
-#include "core/scene/gltf_loader.h"
+#include "bench/light_field_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,21 +64,15 @@ double display(float linear, float exposure) { // clamp and sRGB curve
 class HoleRun {
 public:
     HoleRun(const gpu::Device& device, const HoleOptions& options)
-        : size_(parse_size("--size", options.size)), scene_(scene::load_scene(options.scene)),
-          camera_(find_camera(scene_)), gpu_scene_(device, scene_, scene::choose_traversal(device, "auto")),
-          source_(device, gpu_scene_), planes_(device), reference_(device, gpu_scene_) {
-        const std::optional<ViewGrid> grid = parse_grid(options.grid);
-        if (!grid || camera_ == nullptr) {
-            throw UserError("--grid: expected ROWSxCOLUMNS; --scene: must have a camera");
-        }
-        grid_ = *grid;
-        grid_.geometry.spacing_m = glm::vec2(camera_->spacing_m.value_or(0.03F));
-        variants_ = make_variants(grid_);
+        : scene_(device, {.file = options.scene, .grid = options.grid, .size = parse_size("--size", options.size)}),
+          source_(device, scene_.gpu_scene()), planes_(device), reference_(device, scene_.gpu_scene()),
+          variants_(make_variants(scene_.grid())) {
         for (Variant& variant : variants_) {
-            variant.renderer = std::make_unique<render::GridRenderer>(device, gpu_scene_);
+            variant.renderer = std::make_unique<render::GridRenderer>(device, scene_.gpu_scene());
         }
         pose(0);
-        header_.guard_band = render::measure_guard_band(device, gpu_scene_, header_.source, grid_).band;
+        header_.guard_band =
+            render::measure_guard_band(device, scene_.gpu_scene(), header_.source, scene_.grid()).band;
         header_.settings.exposure = render::auto_exposure(reference_, source_.render(header_));
     }
 
@@ -90,8 +80,7 @@ public:
     void render(std::uint32_t frame, std::uint32_t reference_samples) {
         pose(frame);
         SourceFrame wire = source_.render(header_).download(render::kSourceSemantics);
-        const render::ViewRequest request{grid_.geometry, vertical_fov(header_.source), size_.width_px, size_.height_px,
-                                          lattice_positions(grid_)};
+        const render::ViewRequest request = scene_.request(lattice_positions(scene_.grid()));
         if (reference_samples > 0) {
             wire.header.settings.holes = HoleFilling::path_traced();
             wire.header.settings.samples_per_pixel = reference_samples;
@@ -117,8 +106,8 @@ private:
         header_.frame_id = header_.noise_frame = frame;
         header_.scene_time_ns = static_cast<std::int64_t>(frame) * 1'000'000'000 / 30;
         header_.cut = frame == 0;
-        gpu_scene_.pose(header_.scene_time_ns, header_.cut);
-        header_.source = render::source_camera(gpu_scene_, *camera_, size_.width_px, size_.height_px);
+        scene_.pose(frame);
+        header_.source = scene_.source();
     }
 
     Views make_views(render::GridRenderer& renderer, const SourceFrame& wire, const render::ViewRequest& request) {
@@ -137,7 +126,7 @@ private:
         const render::HoleCounts counts = variant.renderer->hole_counts();
         variant.traced += static_cast<double>(counts.traced);
         variant.hole_pixels += static_cast<double>(counts.holes);
-        variant.pixels += static_cast<double>(views.views.size()) * size_.width_px * size_.height_px;
+        variant.pixels += static_cast<double>(views.views.size()) * scene_.size().width_px * scene_.size().height_px;
         for (std::size_t i = 0; i < views.views.size(); ++i) {
             add_errors(variant, i);
         }
@@ -157,14 +146,10 @@ private:
         }
     }
 
-    Size size_;
-    scene::Scene scene_;
-    const scene::CameraNode* camera_;
-    scene::GpuScene gpu_scene_;
+    LightFieldScene scene_;
     render::SourceRenderer source_;
     render::SourcePlanes planes_;
     render::GridRenderer reference_;
-    ViewGrid grid_;
     FrameHeader header_;
     std::vector<Variant> variants_;
 };

@@ -16,6 +16,8 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_trace_command(app);
     fieldcast::bench::add_frame_command(app);
     fieldcast::bench::add_holes_command(app);
+    fieldcast::bench::add_quality_command(app);
+    fieldcast::bench::add_reference_command(app);
     CLI11_PARSE(app, argc, argv);
     return 0;
 }

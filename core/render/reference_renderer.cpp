@@ -45,6 +45,20 @@ void ReferenceRenderer::start(const Camera& camera) {
     s.recorder.submit();
 }
 
+void ReferenceRenderer::resume(const Camera& camera, const std::vector<glm::vec3>& image,
+                               std::uint32_t samples_per_pixel) {
+    start(camera);
+    FC_ASSERT(image.size() == static_cast<std::size_t>(camera.width_px) * camera.height_px, "image of another size");
+    std::vector<glm::vec4> film;
+    film.reserve(image.size());
+    const auto samples = static_cast<float>(samples_per_pixel);
+    for (const glm::vec3& mean : image) {
+        film.emplace_back(mean * samples, samples);
+    }
+    gpu::write_buffer(state_->device, state_->film, std::as_bytes(std::span(film)));
+    state_->samples = samples_per_pixel;
+}
+
 void ReferenceRenderer::accumulate(const RenderSettings& settings, std::uint32_t seed) {
     State& s = *state_;
     FC_ASSERT(s.film, "start() comes first");

@@ -19,6 +19,9 @@ public:
     /// Starts a new image of the scene as it is posed now.
     void start(const Camera& camera);
 
+    /// Goes on with an image that has `samples_per_pixel` samples: `image` is what image() gave, of the camera's size.
+    void resume(const Camera& camera, const std::vector<glm::vec3>& image, std::uint32_t samples_per_pixel);
+
     /// Adds `settings.samples_per_pixel` samples per pixel (of settings, only what concerns paths is used).
     void accumulate(const RenderSettings& settings, std::uint32_t seed);
 

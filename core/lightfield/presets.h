@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lightfield/render_settings.h"
+
+namespace fieldcast {
+
+/// A way to make light fields, as benchmarks compare them.
+struct Preset {
+    RenderSettings settings;
+    bool has_guard_band = true;
+};
+
+/// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf": SVGF with its paper's parameters.
+/// Both without guard band and with path traced holes, as in the light field paper. "ours": the defaults, holes cascaded
+/// from the corners of a grid of `rows` × `cols`. Empty if there is no such preset.
+std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols);
+
+/// "a, b, c", for messages.
+std::string preset_names();
+
+} // namespace fieldcast
