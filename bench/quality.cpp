@@ -32,6 +32,8 @@ struct QualityOptions {
     std::vector<std::string> presets{"reprojected", "svgf", "ours"};
     std::uint32_t reference_samples = 0; ///< 0: the protocol's
     double exposure = 0.0;
+    double indirect_clamp = -1.0; ///< < 0: the presets'
+    bool renders_scored_views_only = false;
 };
 
 volatile std::sig_atomic_t is_interrupted = 0;
@@ -151,6 +153,9 @@ public:
             }
             RenderSettings chosen = preset->settings;
             chosen.exposure = exposure_;
+            if (options.indirect_clamp >= 0.0) {
+                chosen.indirect_clamp = static_cast<float>(options.indirect_clamp);
+            }
             rows_.push_back({.name = name});
             rows_.back().run = std::make_unique<LightFieldRun>(device, scene_, chosen, preset->has_guard_band);
         }
@@ -161,7 +166,7 @@ public:
 
     /// All rows render every frame, interleaved; the protocol's are scored.
     void score() {
-        const std::vector<LatticePosition> positions = lattice_positions(scene_.grid());
+        const std::vector<LatticePosition> positions = rendered_views();
         for (std::uint32_t frame = 0; frame <= protocol_.frames.back(); ++frame) {
             scene_.pose(frame);
             const bool is_scored = std::ranges::find(protocol_.frames, frame) != protocol_.frames.end();
@@ -199,6 +204,10 @@ public:
     }
 
 private:
+    std::vector<LatticePosition> rendered_views() const {
+        return options_.renders_scored_views_only ? protocol_.views : lattice_positions(scene_.grid());
+    }
+
     void score_row(Row& row, std::uint32_t frame, const Views& views) {
         double ms = 0.0;
         for (const StageTime& time : views.header.render_times) {
@@ -207,14 +216,16 @@ private:
         if (row.run) {
             row.frame_ms.push_back(ms);
             row.traced += static_cast<double>(row.run->grid_renderer().hole_counts().traced);
-            row.pixels += 35.0 * protocol_.size.width_px * protocol_.size.height_px; // all but the source's own
+            const auto synthesised = static_cast<double>(
+                std::ranges::count_if(rendered_views(), [](LatticePosition p) { return p != LatticePosition{}; }));
+            row.pixels += synthesised * protocol_.size.width_px * protocol_.size.height_px;
         }
         for (const LatticePosition position : protocol_.views) {
             const auto reference = references_.get(frame, position, protocol_.reference_samples, {});
             image::RgbF32 picture;
             std::vector<bool> holes;
             if (row.run) {
-                const auto positions = lattice_positions(scene_.grid());
+                const auto positions = rendered_views();
                 const auto index =
                     static_cast<std::size_t>(std::ranges::find(positions, position) - positions.begin());
                 picture = to_image(protocol_.size, row.run->grid_renderer().linear_view(index).pixels);
@@ -338,6 +349,9 @@ void add_quality_command(CLI::App& app) {
         ->delimiter(',')
         ->capture_default_str();
     command->add_option("--exposure", options->exposure, "default: automatic, from the first frame");
+    command->add_option("--indirect-clamp", options->indirect_clamp, "instead of the presets'; 0: none");
+    command->add_flag("--scored-views", options->renders_scored_views_only,
+                      "render only the views that are scored: faster, but frame times and shares are not those of 6x6");
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write the table to this file");
     command->add_option("--out", options->out, "write the scored views to this folder");

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// One level of the edge-avoiding à-trous wavelet transform over diffuse and specular illumination together: 5×5 B3
-// spline, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
+// One level of the edge-avoiding à-trous wavelet transform over diffuse and specular illumination together: B3 spline,
+// 5×5 or its inner 3×3, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
 #extension GL_GOOGLE_include_directive : require
 #include "lib/filter_taps.glsl"
 #include "lib/linear_index.glsl"
@@ -68,11 +68,12 @@ void main() {
     Signal d = make_signal(diffuse, variance.x);
     Signal s = make_signal(specular, variance.y);
     const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
-    for (int i = 0; i < 25; ++i) {
-        ivec2 tap = ivec2(i % 5 - 2, i / 5 - 2);
+    int side = 2 * params.radius + 1;
+    for (int i = 0; i < side * side; ++i) {
+        ivec2 tap = ivec2(i % side, i / side) - params.radius;
         ivec2 offset = tap * int(params.step);
         ivec2 at = c.at + offset;
-        if (i != 12 && is_inside(at)) {
+        if (tap != ivec2(0) && is_inside(at)) {
             int texel = tap_texel(c, at);
             float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, texelFetch(geometry_, texel));
             if (weight > 1e-4) {

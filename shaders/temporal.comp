@@ -142,5 +142,5 @@ void main() {
     float frames = min(history.frames * scale + 1.0, kMaxHistory);
     float alpha = max(params.alpha, 1.0 / frames);
     store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
-          mix(history.moments * scale, moments, alpha), frames);
+          mix(history.moments * scale, moments, max(params.moments_alpha, 1.0 / frames)), frames);
 }

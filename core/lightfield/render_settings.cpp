@@ -10,6 +10,9 @@ std::optional<HoleFilling> parse_hole_filling(const std::string& text, std::uint
         return parse_hole_filling("previous,isolated,cascade,source,denoise", rows, cols);
     }
     HoleFilling holes = HoleFilling::path_traced();
+    if (text.ends_with(",")) {
+        return std::nullopt; // an empty word that getline does not see
+    }
     if (text == "none") {
         return holes;
     }

@@ -7,7 +7,11 @@
 
 namespace fieldcast {
 
-enum class Denoiser : std::uint8_t { kNone = 0, kSvgf = 1 };
+enum class Denoiser : std::uint8_t {
+    kNone = 0,
+    kSvgf = 1,     ///< with its paper's parameters
+    kSvgfPlus = 2, ///< two histories, sharper and faster (docs/lightfield.md)
+};
 enum class ToneMap : std::uint8_t { kClampSrgb = 0, kAces = 1 };
 
 /// Thresholds of the spatial reprojection test, in units of the pixel footprint ρ = 2 z tan(fovy/2) / H
@@ -43,8 +47,10 @@ struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
-    float indirect_clamp = 20.0F; ///< luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased
-    Denoiser denoiser = Denoiser::kSvgf;
+    /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. Where little of the picture is lit, its
+    /// light is far above the mean: 20 took a third of Sponza's indirect light (docs/benchmarks.md).
+    float indirect_clamp = 100.0F;
+    Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2
     ToneMap tone_map = ToneMap::kClampSrgb;

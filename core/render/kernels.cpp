@@ -8,6 +8,7 @@
 #include "shaders/filter_holes.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
+#include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/pack_source.spv.h"
 #include "shaders/reproject.spv.h"
@@ -45,6 +46,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return {"count_holes", count_holes_spv};
     case KernelId::kFilterHoles:
         return {"filter_holes", filter_holes_spv};
+    case KernelId::kLimitHistory:
+        return {"limit_history", limit_history_spv};
     case KernelId::kListHoles:
         return {"list_holes", list_holes_spv};
     case KernelId::kScanHoles:

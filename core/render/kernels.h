@@ -13,6 +13,7 @@ enum class KernelId {
     kFilterHoles,
     kFinishList,
     kInterleaveSource,
+    kLimitHistory,
     kListHoles,
     kPackSource,
     kReproject,

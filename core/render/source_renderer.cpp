@@ -114,7 +114,7 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.planes.resize(timed);
     s.svgf.swap();
     s.previous = camera;
-    s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser == Denoiser::kSvgf;
+    s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
     return s.planes;
 }
 

@@ -9,6 +9,29 @@ namespace fieldcast::render {
 namespace {
 
 constexpr std::uint32_t kLevels = 5;
+
+/// What tells SVGF+ from SVGF, whose values are those of its paper.
+struct Tuning {
+    float sigma_luminance = 4.0F;
+    float sigma_depth = 1.0F;
+    std::uint32_t normal_squarings = 7; // 128
+    int outer_radius = 2;               // taps of the levels after the first
+    float slow_share = 1.0F;            // of α: least weight of a frame in illumination
+    bool feeds_back = true; // the first level's result replaces the history
+};
+
+constexpr Tuning kSvgf{};
+constexpr Tuning kSvgfPlus{.sigma_luminance = 1.5F,
+                           .sigma_depth = 1.0F,
+                           .normal_squarings = 5,
+                           .outer_radius = 1,
+                           .slow_share = 1.0F / 6.0F,
+                           .feeds_back = false};
+
+const Tuning& tuning_of(const RenderSettings& settings) {
+    return settings.denoiser == Denoiser::kSvgfPlus ? kSvgfPlus : kSvgf;
+}
+
 constexpr VkFormat kFloats = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 std::vector<gpu::Binding> texel_bindings(std::uint32_t count) {
@@ -41,6 +64,7 @@ Svgf::Svgf(const gpu::Device& device, const scene::GpuScene& scene)
       temporal_(make_scene_kernel(device, scene, KernelId::kTemporal, sizeof(shared::TemporalParams),
                                   {&temporal_layout_})),
       variance_(make_plain_kernel(device, KernelId::kSvgfVariance, sizeof(shared::FilterParams), {&filter_layout_})),
+      limit_history_(make_plain_kernel(device, KernelId::kLimitHistory, sizeof(shared::FilterParams), {&filter_layout_})),
       atrous_(make_plain_kernel(device, KernelId::kSvgfAtrous, sizeof(shared::FilterParams), {&filter_layout_})) {}
 
 void Svgf::resize(std::uint32_t texel_count) {
@@ -90,7 +114,7 @@ void Svgf::bind() {
 void Svgf::record(gpu::Recorder& recorder, const Frame& frame) {
     result_diffuse_ = &noisy_[0];
     result_specular_ = &noisy_[1];
-    const bool filters = frame.settings.denoiser == Denoiser::kSvgf;
+    const bool filters = frame.settings.denoiser != Denoiser::kNone;
     if (frame.settings.temporal_accumulation || filters) {
         record_temporal(recorder, frame);
     }
@@ -112,8 +136,10 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
+    const Tuning& tuning = tuning_of(frame.settings);
     params.flags = frame.has_history && frame.settings.temporal_accumulation ? shared::kFlagTemporal : 0;
-    params.alpha = frame.settings.temporal_alpha;
+    params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
+    params.moments_alpha = frame.settings.temporal_alpha;
     recorder.stage("temporal");
     recorder.dispatch(temporal_, {&scene_.bindings(), &temporal_sets_[current_]}, params,
                       linear_groups(texel_count_));
@@ -122,16 +148,18 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
     result_specular_ = &now.specular;
 }
 
-// Variance estimate, then five levels; the first level's colour replaces the history (SVGF, section 4.3).
+// Variance estimate, then five levels. SVGF: the first level's colour replaces the history (SVGF, section 4.3).
 void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
+    const Tuning& tuning = tuning_of(frame.settings);
     shared::FilterParams params{};
     params.camera = frame.cameras;
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
-    params.sigma_luminance = 4.0F; // the paper's values
-    params.sigma_depth = 1.0F;
-    params.normal_squarings = 7; // 128
+    params.sigma_luminance = tuning.sigma_luminance;
+    params.sigma_depth = tuning.sigma_depth;
+    params.normal_squarings = tuning.normal_squarings;
+    params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
     const gpu::GroupCount groups = linear_groups(texel_count_);
     recorder.stage("denoise");
     std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
@@ -142,18 +170,26 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
         recorder.barrier();
         input = output;
     };
-    run(variance_, 1);
+    run(tuning.feeds_back ? variance_ : limit_history_, 1);
+    if (!tuning.feeds_back) {
+        keep_as_history(recorder, 0);
+    }
     for (std::uint32_t level = 0; level < kLevels; ++level) {
         params.step = 1U << level;
+        params.radius = level == 0 ? 2 : tuning.outer_radius;
         run(atrous_, input == 1 ? 2 : 1);
-        if (level == 0) {
-            const std::uint64_t bytes = static_cast<std::uint64_t>(texel_count_) * 16;
-            recorder.copy(scratch_[input - 1][0], history_[current_].diffuse, bytes);
-            recorder.copy(scratch_[input - 1][1], history_[current_].specular, bytes);
+        if (level == 0 && tuning.feeds_back) {
+            keep_as_history(recorder, input - 1);
         }
     }
     result_diffuse_ = &scratch_[input - 1][0];
     result_specular_ = &scratch_[input - 1][1];
+}
+
+void Svgf::keep_as_history(gpu::Recorder& recorder, std::uint32_t scratch) {
+    const std::uint64_t bytes = static_cast<std::uint64_t>(texel_count_) * 16;
+    recorder.copy(scratch_[scratch][0], history_[current_].diffuse, bytes);
+    recorder.copy(scratch_[scratch][1], history_[current_].specular, bytes);
 }
 
 } // namespace fieldcast::render

@@ -28,6 +28,8 @@ struct SourceHistory {
 
 /// Temporal accumulation and the à-trous filter of SVGF over diffuse and specular illumination.
 /// C. Schied et al. Spatiotemporal Variance-Guided Filtering. HPG 2017.
+/// Or SVGF+: a history six times as long, limited by a short one; what is known of its variance narrows the filter, whose
+/// outer levels have 3×3 taps; what was filtered does not enter the history.
 class Svgf {
 public:
     Svgf(const gpu::Device& device, const scene::GpuScene& scene);
@@ -63,6 +65,7 @@ private:
     void bind();
     void record_temporal(gpu::Recorder& recorder, const Frame& frame);
     void record_filter(gpu::Recorder& recorder, const Frame& frame);
+    void keep_as_history(gpu::Recorder& recorder, std::uint32_t scratch);
 
     const gpu::Device& device_;
     const scene::GpuScene& scene_;
@@ -70,6 +73,7 @@ private:
     gpu::BindingLayout filter_layout_;
     gpu::Kernel temporal_;
     gpu::Kernel variance_;
+    gpu::Kernel limit_history_;
     gpu::Kernel atrous_;
     std::uint32_t texel_count_ = 0;
     std::uint32_t current_ = 0;

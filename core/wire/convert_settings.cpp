@@ -19,6 +19,8 @@ v1::Denoiser denoiser_to_proto(Denoiser denoiser) {
         return v1::DENOISER_NONE;
     case Denoiser::kSvgf:
         return v1::DENOISER_SVGF;
+    case Denoiser::kSvgfPlus:
+        return v1::DENOISER_SVGF_PLUS;
     }
     return v1::DENOISER_UNSPECIFIED;
 }
@@ -29,6 +31,8 @@ std::optional<Denoiser> denoiser_from_proto(int number) {
         return Denoiser::kNone;
     case v1::DENOISER_SVGF:
         return Denoiser::kSvgf;
+    case v1::DENOISER_SVGF_PLUS:
+        return Denoiser::kSvgfPlus;
     default: // any number may stand in a message
         return std::nullopt;
     }

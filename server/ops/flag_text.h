@@ -18,7 +18,7 @@ struct FlagText {
     std::string convergence = "inf";
     std::string largest_grid = "6x6";
     bool lacks_next_event_estimation = false;
-    std::string denoiser = "svgf";
+    std::string denoiser = "svgf+";
     std::string holes = "all";
     std::string exposure = "auto";
     std::string tone_map = "srgb";

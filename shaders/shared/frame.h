@@ -118,7 +118,8 @@ struct TemporalParams {
     uint height;
     uint page_count;
     uint flags;                  // kFlagTemporal: there is a history
-    float alpha;
+    float alpha;                 // least weight of the new frame in illumination
+    float moments_alpha;         // … and in the moments
 };
 const uint kTemporalGeometry = 0;          // GeometryTexel, current
 const uint kTemporalPreviousGeometry = 1;  // GeometryTexel
@@ -129,7 +130,7 @@ const uint kTemporalPreviousLength = 5;    // R32F
 const uint kTemporalDiffuse = 6;           // noisy input
 const uint kTemporalSpecular = 7;
 
-// svgf_variance.comp and svgf_atrous.comp. Read set 1: kFilter….
+// svgf_variance.comp, limit_history.comp and svgf_atrous.comp. Read set 1: kFilter….
 struct FilterParams {
     CameraBuffer camera;
     Vec4Buffer diffuse;  // out: rgb, a = variance
@@ -141,6 +142,8 @@ struct FilterParams {
     float sigma_luminance;
     float sigma_depth;
     uint normal_squarings; // σ of the normals is 2 to this power
+    int radius;            // svgf_atrous.comp: taps on each side, 1 or 2
+    float alpha;           // limit_history.comp: least weight of a frame in the illumination
 };
 const uint kFilterGeometry = 0;
 const uint kFilterDiffuse = 1;

@@ -80,7 +80,7 @@ TEST_F(SourceRendererTest, ACutForgetsAllHistory) {
         renderer.render(accumulating_header(camera, frame, 1));
     }
     FrameHeader header = accumulating_header(camera, 4, 1);
-    for (const Denoiser denoiser : {Denoiser::kNone, Denoiser::kSvgf}) {
+    for (const Denoiser denoiser : {Denoiser::kNone, Denoiser::kSvgf, Denoiser::kSvgfPlus}) {
         header.settings.denoiser = denoiser;
         header.cut = true;
         const SourceFrame expected = fresh.render(header).download(kSourceSemantics);
@@ -101,7 +101,7 @@ TEST_F(SourceRendererTest, RendersTheSameFrameTwiceAlike) {
     SourceRenderer b(device(), gpu_scene);
     for (std::uint64_t frame = 0; frame < 3; ++frame) {
         FrameHeader header = accumulating_header(room_camera(kWidth, kHeight), frame, 1);
-        header.settings.denoiser = Denoiser::kSvgf;
+        header.settings.denoiser = Denoiser::kSvgfPlus;
         EXPECT_EQ(a.render(header).download(kSourceSemantics).planes,
                   b.render(header).download(kSourceSemantics).planes);
     }

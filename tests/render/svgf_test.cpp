@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kSize = 48;
 
-class SvgfTest : public RenderTest {
+class SvgfTest : public RenderTest, public testing::WithParamInterface<Denoiser> {
 protected:
     /// Demodulated diffuse light of one frame without history.
     std::vector<glm::vec3> light(const scene::Scene& scene, const Camera& camera, Denoiser denoiser) const {
@@ -24,7 +24,7 @@ protected:
     }
 };
 
-TEST_F(SvgfTest, ConstantIlluminationPassesUnchanged) {
+TEST_P(SvgfTest, ConstantIlluminationPassesUnchanged) {
     // Convex shapes in a constant sky, above no ground: every sample of every visible point is 1.
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
@@ -33,13 +33,13 @@ TEST_F(SvgfTest, ConstantIlluminationPassesUnchanged) {
     scene::Scene scene = builder.scene();
     scene.instances.pop_back(); // the box alone
     for (const glm::vec3& pixel :
-         light(scene, look_at({0.2F, 0.4F, 2}, {-0.4F, 0, 0}, 0.6F, kSize, kSize), Denoiser::kSvgf)) {
+         light(scene, look_at({0.2F, 0.4F, 2}, {-0.4F, 0, 0}, 0.6F, kSize, kSize), GetParam())) {
         // Sky pixels stay 0; the rest are weighted means of numbers that differ by rounding.
         EXPECT_TRUE(pixel.y == 0.0F || std::abs(pixel.y - 1.0F) < 0.01F) << pixel.y;
     }
 }
 
-TEST_F(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
+TEST_P(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
     // A roof of two slopes under a directional light: two exact, different values side by side.
     SceneBuilder builder;
     builder.add(rectangle({-1, 0, 0}, {1, 0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -49,7 +49,7 @@ TEST_F(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
     const glm::vec3 towards = glm::normalize(glm::vec3(0.8F, -1, 0));
     builder.add_light(light_source, facing({}, towards));
     const Camera camera = look_at({0, 4, 0.5F}, {0, 0, 0}, 0.4F, kSize, kSize);
-    const std::vector<glm::vec3> filtered = light(builder.scene(), camera, Denoiser::kSvgf);
+    const std::vector<glm::vec3> filtered = light(builder.scene(), camera, GetParam());
     const float slope = 1.0F / std::sqrt(1.25F);
     const glm::vec2 expected =
         glm::vec2(glm::dot(-towards, glm::vec3(-0.5F, 1, 0)), glm::dot(-towards, glm::vec3(0.5F, 1, 0))) * slope *
@@ -62,7 +62,7 @@ TEST_F(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
     }
 }
 
-TEST_F(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
+TEST_P(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
     builder.add(rectangle({0, 2, 0}, {1.5F, 0, 0}, {0, 0, 1.5F}), builder.add_material(emitter(glm::vec3(5.0F))));
@@ -78,7 +78,7 @@ TEST_F(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
         return std::pair(sum / n, std::sqrt(squares / n - sum / n * sum / n) / (sum / n));
     };
     const auto noisy = relative_spread(light(builder.scene(), camera, Denoiser::kNone));
-    const auto smooth = relative_spread(light(builder.scene(), camera, Denoiser::kSvgf));
+    const auto smooth = relative_spread(light(builder.scene(), camera, GetParam()));
     RecordProperty("spread", std::to_string(noisy.second) + " to " + std::to_string(smooth.second));
     // 7×7 pixels, then five levels that reach 62 pixels: far more than 49 pixels go into each, 1/7 of the spread.
     // What the light itself varies over the image (2 %) remains.
@@ -86,6 +86,51 @@ TEST_F(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
     EXPECT_NEAR(smooth.first, noisy.first,
                 4.5 * noisy.second / kSize * noisy.first); // the mean stays, 4.5 standard errors
 }
+
+// A light that jumps, without noise: how much of the old light is left in the middle of the picture eight frames later.
+TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
+    SceneBuilder builder;
+    builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    scene::Light lamp;
+    lamp.type = scene::LightType::kPoint;
+    lamp.intensity = glm::vec3(3.0F);
+    builder.add_light(lamp, at({0, 1, 0}));
+    scene::Scene scene = builder.scene();
+    scene.nodes.back() = {}; // its place comes from the animation
+    scene.nodes.back().is_animated = true;
+    scene::AnimationChannel channel;
+    channel.node = static_cast<std::uint32_t>(scene.nodes.size() - 1);
+    channel.times_s = {0.0F, 0.49F, 0.5F, 1.0F};
+    channel.values = {glm::vec4(0, 1, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 2, 0, 0), glm::vec4(0, 2, 0, 0)};
+    scene.channels.push_back(channel);
+    scene.duration_s = 1.0;
+    scene::GpuScene gpu_scene(device(), scene, traversal());
+    SourceRenderer renderer(device(), gpu_scene);
+    std::vector<double> middle;
+    for (std::uint32_t frame = 0; frame < 48; ++frame) { // 40 before the jump: longer than any history
+        FrameHeader header = plain_header(look_at({0, 3, 0.5F}, {0, 0, 0}, 0.4F, kSize, kSize), 1);
+        header.frame_id = header.noise_frame = frame;
+        header.cut = frame == 0;
+        header.scene_time_ns = frame < 40 ? frame * 10'000'000LL : 500'000'000LL + frame * 1'000'000LL;
+        header.settings.max_bounces = 1;
+        header.settings.denoiser = GetParam();
+        header.settings.temporal_accumulation = true;
+        gpu_scene.pose(header.scene_time_ns, header.cut);
+        const std::array wanted{PlaneSemantic::kDiffuse};
+        const auto light = image::unpack_plane(renderer.render(header).download(wanted).planes.front());
+        middle.push_back(static_cast<double>(light[std::size_t{kSize} * kSize / 2 + kSize / 2].y));
+    }
+    const double before = middle[39];
+    const double after = before / 4; // twice as far
+    const double left = (middle.back() - after) / (before - after);
+    RecordProperty("left", std::to_string(left));
+    // α = 0.2 leaves 0.8⁸ = 0.17; a history of 30 frames alone would leave 0.76. R11G11B10F: 1 %.
+    EXPECT_GT(left, -0.02);
+    EXPECT_LT(left, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Denoisers, SvgfTest, testing::Values(Denoiser::kSvgf, Denoiser::kSvgfPlus),
+                         [](const auto& test) { return test.param == Denoiser::kSvgf ? "Svgf" : "SvgfPlus"; });
 
 } // namespace
 } // namespace fieldcast::render

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/lightfield/presets.h"
+
+#include <gtest/gtest.h>
+
+namespace fieldcast {
+namespace {
+
+TEST(HoleFilling, IsReadFromWords) {
+    EXPECT_EQ(parse_hole_filling("all", 4, 5), (HoleFilling{true, true, 4, 5, true, true}));
+    EXPECT_EQ(parse_hole_filling("none", 4, 5), HoleFilling::path_traced());
+    EXPECT_EQ(parse_hole_filling("cascade", 4, 5), (HoleFilling{false, false, 4, 5, false, false}));
+    EXPECT_EQ(parse_hole_filling("denoise,previous", 4, 5), (HoleFilling{true, false, 0, 0, false, true}));
+    for (const char* const text : {"", "everything", "cascade,", ",cascade", "all,none"}) {
+        EXPECT_EQ(parse_hole_filling(text, 4, 5), std::nullopt) << text;
+    }
+}
+
+TEST(Presets, DifferInWhatTheyAreNamedFor) {
+    const auto ours = find_preset("ours", 6, 6);
+    const auto svgf = find_preset("svgf", 6, 6);
+    const auto reprojected = find_preset("reprojected", 6, 6);
+    ASSERT_TRUE(ours && svgf && reprojected);
+    EXPECT_EQ(ours->settings.holes, parse_hole_filling("all", 6, 6));
+    EXPECT_TRUE(ours->has_guard_band);
+    EXPECT_EQ(svgf->settings.holes, HoleFilling::path_traced());
+    EXPECT_FALSE(svgf->has_guard_band);
+    EXPECT_EQ(reprojected->settings.denoiser, Denoiser::kNone);
+    EXPECT_EQ(ours->settings.indirect_clamp, svgf->settings.indirect_clamp); // the same input
+    EXPECT_FALSE(find_preset("best", 6, 6));
+}
+
+} // namespace
+} // namespace fieldcast
