@@ -46,6 +46,24 @@ Signal make_signal(vec4 centre, float variance) {
     return Signal(centre, 1.0, params.sigma_luminance * sqrt(max(variance, 0.0)) + 1e-4, luminance(centre.rgb));
 }
 
+// Brightest luminance (diffuse, specular) of the eight pixels around on the same surface; negative: there are none.
+vec2 brightest_around(Centre c) {
+    vec2 brightest = vec2(-1.0);
+    for (int i = 0; i < 9; ++i) {
+        ivec2 at = c.at + ivec2(i % 3 - 1, i / 3 - 1);
+        if (i != 4 && is_inside(at) && texelFetch(geometry_, tap_texel(c, at)).z == c.id) {
+            int texel = tap_texel(c, at);
+            brightest = max(brightest, vec2(luminance(texelFetch(diffuse_, texel).rgb), luminance(texelFetch(specular_, texel).rgb)));
+        }
+    }
+    return brightest;
+}
+
+void limit(inout vec4 value, float brightest) {
+    float l = luminance(value.rgb);
+    value.rgb *= brightest >= 0.0 && l > brightest ? brightest / l : 1.0;
+}
+
 void store(uint pixel, vec4 diffuse, vec4 specular) {
     params.diffuse.at[pixel] = diffuse;
     params.specular.at[pixel] = specular;
@@ -82,5 +100,12 @@ void main() {
             }
         }
     }
-    store(pixel, resolve(d), resolve(s));
+    diffuse = resolve(d);
+    specular = resolve(s);
+    if (params.limits_outliers != 0u) {
+        vec2 brightest = brightest_around(c);
+        limit(diffuse, brightest.x);
+        limit(specular, brightest.y);
+    }
+    store(pixel, diffuse, specular);
 }

@@ -17,7 +17,8 @@ struct Tuning {
     std::uint32_t normal_squarings = 7; // 128
     int outer_radius = 2;               // taps of the levels after the first
     float slow_share = 1.0F;            // of α: least weight of a frame in illumination
-    bool feeds_back = true; // the first level's result replaces the history
+    bool limits_outliers = false; // in the last level: earlier, sparse light would be lost
+    bool feeds_back = true;       // the first level's result replaces the history
 };
 
 constexpr Tuning kSvgf{};
@@ -26,6 +27,7 @@ constexpr Tuning kSvgfPlus{.sigma_luminance = 1.5F,
                            .normal_squarings = 5,
                            .outer_radius = 1,
                            .slow_share = 1.0F / 6.0F,
+                           .limits_outliers = true,
                            .feeds_back = false};
 
 const Tuning& tuning_of(const RenderSettings& settings) {
@@ -177,6 +179,7 @@ void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
     for (std::uint32_t level = 0; level < kLevels; ++level) {
         params.step = 1U << level;
         params.radius = level == 0 ? 2 : tuning.outer_radius;
+        params.limits_outliers = tuning.limits_outliers && level + 1 == kLevels ? 1 : 0;
         run(atrous_, input == 1 ? 2 : 1);
         if (level == 0 && tuning.feeds_back) {
             keep_as_history(recorder, input - 1);

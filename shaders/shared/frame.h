@@ -143,6 +143,7 @@ struct FilterParams {
     float sigma_depth;
     uint normal_squarings; // σ of the normals is 2 to this power
     int radius;            // svgf_atrous.comp: taps on each side, 1 or 2
+    uint limits_outliers;  // svgf_atrous.comp: no pixel stays brighter than all around it on its surface
     float alpha;           // limit_history.comp: least weight of a frame in the illumination
 };
 const uint kFilterGeometry = 0;
