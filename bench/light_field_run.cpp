@@ -56,14 +56,17 @@ render::ViewRequest LightFieldScene::request(std::vector<LatticePosition> positi
 }
 
 LightFieldRun::LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
-                             bool has_guard_band)
+                             bool has_guard_band, std::vector<LatticePosition> source_positions)
     : scene_(scene), source_renderer_(device, scene.gpu_scene()), grid_renderer_(device, scene.gpu_scene()) {
     scene_.pose(0);
     header_.cut = true;
     header_.settings = settings;
     header_.source = scene_.source();
+    header_.source_positions = std::move(source_positions);
+    header_.source_geometry = scene_.grid().geometry;
     if (has_guard_band) {
-        guard_band_ = render::measure_guard_band(device, scene_.gpu_scene(), header_.source, scene_.grid());
+        guard_band_ = render::measure_guard_band(device, scene_.gpu_scene(), header_.source, scene_.grid(),
+                                                 header_.source_positions);
         header_.guard_band = guard_band_.band;
     }
     if (settings.exposure <= 0.0F) {

@@ -50,8 +50,8 @@ private:
 class LightFieldRun {
 public:
     /// `settings.exposure` 0: automatic, from the first frame. Renders that frame if so or if `has_guard_band`.
-    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
-                  bool has_guard_band);
+    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings, bool has_guard_band,
+                  std::vector<LatticePosition> source_positions = middle_source());
 
     /// The scene must be posed for `frame`. Stage times are in the result's header.
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);

@@ -234,6 +234,7 @@ private:
                 one_sample_.start(scene_.view(position));
                 RenderSettings settings;
                 settings.exposure = exposure_;
+                settings.light_sampling = LightSampling::plain();
                 one_sample_.accumulate(settings, frame);
                 picture = to_image(protocol_.size, one_sample_.image());
             }

@@ -123,13 +123,15 @@ void main() {
     float l_diffuse = luminance(diffuse);
     float l_specular = luminance(specular);
     vec4 moments = vec4(l_diffuse, l_diffuse * l_diffuse, l_specular, l_specular * l_specular);
-    Visibility seen = page_visibility(params.visibility, params.layers, at.page, at.pixel);
+    Visibility seen = page_visibility(params.visibility, params.layers, at.page, params.source_count,
+                                      view_stride(params.width, params.height), at.pixel);
     if ((params.flags & kFlagTemporal) == 0u || seen.instance == kNoInstance) {
         store(index, diffuse, specular, moments, 1.0);
         return;
     }
-    CameraRecord now = params.cameras.at[0];
-    CameraRecord before = params.cameras.at[1];
+    uint source = source_of_page(at.page, params.source_count);
+    CameraRecord now = params.cameras.at[source];
+    CameraRecord before = params.cameras.at[params.source_count + source];
     Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5);
     past.normal = unpack_normal(texelFetch(geometry_, int(index)).y);
     vec3 p = camera_project(before, past.position);

@@ -31,12 +31,13 @@ void write_quilt(const std::filesystem::path& folder, const Picture& picture) {
                      image::assemble_quilt(picture.grid, picture.views.views, layout));
 }
 
-/// The planes of the image itself. All parts of an EXR show the same window, which planes with layers stacked below
-/// would leave.
-SourceFrame without_layers(const SourceFrame& source) {
+/// The first source image. All parts of an EXR show the same window, which planes with other sources and layers stacked
+/// below would leave.
+SourceFrame first_image(const SourceFrame& source) {
     SourceFrame image;
     image.header = source.header;
     image.header.layer_count = 0;
+    image.header.source_positions.resize(1);
     for (const Plane& plane : source.planes) {
         Plane first = plane;
         first.height_px = plane_height(image.header, plane.semantic);
@@ -65,7 +66,7 @@ void write_picture(const std::filesystem::path& folder, const Picture& picture, 
                                  image::SweepPath::kCircle, kLookAroundDelay);
     }
     if (products.source_exr && picture.source != nullptr) {
-        image::write_exr(folder / "source.exr", without_layers(*picture.source));
+        image::write_exr(folder / "source.exr", first_image(*picture.source));
     }
 }
 

@@ -94,7 +94,6 @@ struct GridRenderer::State {
     HoleCounts hole_counts;
     std::vector<Camera> view_cameras;
     std::uint32_t source_texels = 0; ///< of all pages
-    std::uint32_t page_count = 1;
     std::uint64_t view_pixels = 0; ///< over all views, padded
     std::uint64_t invalid_samples = 0;
 
@@ -104,7 +103,7 @@ struct GridRenderer::State {
     gpu::TexelView illumination_view;
     gpu::BindingSet source_set;
 
-    gpu::Buffer cameras; ///< source, views
+    gpu::Buffer cameras; ///< kMaxSources of sources, then of the views
     gpu::Buffer views;   ///< ViewRecord
     gpu::Buffer counters;
     gpu::Buffer visibility;
@@ -159,7 +158,6 @@ HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, con
 }
 
 void GridRenderer::State::resize(const SourcePlanes& source) {
-    page_count = source.page_count();
     if (source.texel_count() != source_texels) {
         source_texels = source.texel_count();
         geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_texels) * 16);
@@ -170,7 +168,7 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
         source_set.set(shared::kReprojectGeometry, geometry_view);
         source_set.set(shared::kReprojectIllumination, illumination_view);
     }
-    cameras = gpu::Buffer(device, (view_count() + 1ULL) * sizeof(shared::CameraRecord));
+    cameras = gpu::Buffer(device, (shared::kMaxSources + view_count()) * sizeof(shared::CameraRecord));
     views = gpu::Buffer(device, view_count() * sizeof(shared::ViewRecord));
     counters = gpu::Buffer(device, (shared::kCounterDiscards + 4ULL * view_count()) * 4);
     const std::uint64_t pixels = static_cast<std::uint64_t>(padded_pixels(request)) * view_count();
@@ -187,7 +185,10 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
 
 void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
     const FrameHeader& header = source.header();
-    std::vector<shared::CameraRecord> camera_records{make_camera_record(source.camera())};
+    std::vector<shared::CameraRecord> camera_records(shared::kMaxSources);
+    for (std::uint32_t i = 0; i < source.source_count(); ++i) {
+        camera_records[i] = make_camera_record(source.camera(i));
+    }
     std::vector<shared::ViewRecord> view_records;
     view_cameras.clear();
     for (const LatticePosition position : request.positions) {
@@ -205,7 +206,7 @@ void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::
 
 void GridRenderer::State::record_visibility() {
     shared::VisibilityParams params{};
-    params.cameras = cameras.address() + sizeof(shared::CameraRecord);
+    params.cameras = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
     params.visibility = visibility.address();
     params.layers = layers.address();
     params.width = request.width_px;
@@ -244,7 +245,7 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.width = request.width_px;
     params.height = request.height_px;
     params.view_count = view_count();
-    params.settings = reproject_settings(header.settings.reprojection);
+    params.settings = reproject_settings(header);
     recorder.stage("reproject");
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
                       {gpu::groups_for(params.width, shared::kLinearGroup), params.height, params.view_count});
@@ -264,11 +265,10 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     params.width = request.width_px;
     params.height = request.height_px;
     params.samples_per_pixel = header.settings.samples_per_pixel;
-    params.max_bounces = header.settings.max_bounces;
-    params.flags = kernel_flags(header.settings);
+    params.path = path_bits(header.settings);
     params.max_indirect = max_indirect(header.settings);
-    params.page_count = page_count;
-    params.settings = reproject_settings(header.settings.reprojection);
+    params.layer_count = header.layer_count;
+    params.settings = reproject_settings(header);
     recorder.stage("layers");
     recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers}, {1, 1, 1});
     recorder.barrier();

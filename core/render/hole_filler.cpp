@@ -99,14 +99,14 @@ shared::HoleParams HoleFiller::make_params(const FrameHeader& header, const Targ
                     (batch_.corners.empty() ? 0U : shared::kHolesCascade);
     params.noise_frame = header.noise_frame;
     params.samples_per_pixel = settings.samples_per_pixel;
-    params.max_bounces = settings.max_bounces | kernel_flags(settings) << 16U;
+    params.path = path_bits(settings);
     params.max_indirect = max_indirect(settings);
     params.alpha = settings.temporal_alpha;
     for (std::uint32_t i = 0; i < 4; ++i) {
         const std::uint32_t corner = i < batch_.corners.size() ? batch_.corners[i] : shared::kNoCornerView;
-        params.corner_views[static_cast<int>(i / 2)] |= corner << (16 * (i % 2));
+        params.corner_views |= corner << (8 * i);
     }
-    params.settings = reproject_settings(settings.reprojection);
+    params.settings = reproject_settings(header);
     return params;
 }
 

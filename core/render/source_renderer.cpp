@@ -7,16 +7,26 @@
 #include "core/render/source_surfaces.h"
 #include "core/render/svgf.h"
 
-#include <optional>
-
 namespace fieldcast::render {
+
+namespace {
+
+std::vector<Camera> source_cameras(const SourcePlanes& planes) {
+    std::vector<Camera> cameras;
+    for (std::size_t i = 0; i < planes.source_count(); ++i) {
+        cameras.push_back(planes.camera(i));
+    }
+    return cameras;
+}
+
+} // namespace
 
 struct SourceRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s)
         : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), svgf(d, s),
           trace(make_scene_kernel(d, s, KernelId::kTraceSource, sizeof(shared::TraceSourceParams))),
           pack(make_plain_kernel(d, KernelId::kPackSource, sizeof(shared::PackParams))),
-          cameras(d, 2 * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
+          cameras(d, 2 * kMaxSources * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
         recorder.fill(invalid_samples, 0);
         recorder.submit();
     }
@@ -36,18 +46,21 @@ struct SourceRenderer::State {
     gpu::Kernel pack;
     gpu::Buffer cameras; ///< current, previous
     gpu::Buffer invalid_samples;
-    std::optional<Camera> previous;
+    std::vector<Camera> previous; ///< of the sources of the frame before
     bool has_stored_history = false; ///< the frame before accumulated or filtered
 };
 
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
-    const Camera now = with_guard_band(header.source, header.guard_band);
-    return previous && has_stored_history && !header.cut && previous->width_px == now.width_px && previous->height_px == now.height_px;
+    const Camera now = widened_source(header, 0);
+    return has_stored_history && !header.cut && previous.size() == header.source_positions.size() &&
+           previous[0].width_px == now.width_px && previous[0].height_px == now.height_px;
 }
 
 void SourceRenderer::State::upload_cameras() {
-    const Camera now = planes.camera();
-    const std::array records{make_camera_record(now), make_camera_record(previous.value_or(now))};
+    const std::vector<Camera> now = source_cameras(planes);
+    std::vector<shared::CameraRecord> records = make_camera_records(now);
+    const std::vector<shared::CameraRecord> before = make_camera_records(previous.size() == now.size() ? previous : now);
+    records.insert(records.end(), before.begin(), before.end());
     gpu::write_buffer(device, cameras, std::as_bytes(std::span(records)));
 }
 
@@ -55,7 +68,7 @@ void SourceRenderer::State::record_trace() {
     const FrameHeader& header = planes.header();
     const Camera camera = planes.camera();
     shared::TraceSourceParams params{};
-    params.camera = cameras.address();
+    params.cameras = cameras.address();
     params.visibility = surfaces.visibility().address();
     params.layers = surfaces.layers().address();
     params.diffuse = svgf.noisy_diffuse().address();
@@ -66,8 +79,8 @@ void SourceRenderer::State::record_trace() {
     params.seed = header.seed;
     params.first_sample = header.noise_frame * header.settings.samples_per_pixel;
     params.samples_per_pixel = header.settings.samples_per_pixel;
-    params.max_bounces = header.settings.max_bounces;
-    params.flags = kernel_flags(header.settings);
+    params.source_count = planes.source_count();
+    params.path = path_bits(header.settings);
     params.max_indirect = max_indirect(header.settings);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
@@ -105,15 +118,22 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.svgf.geometry());
     s.record_trace();
     const Camera camera = s.planes.camera();
-    s.svgf.record(s.recorder, {s.cameras.address(), s.surfaces.visibility().address(), s.surfaces.layers().address(),
-                               camera.width_px, camera.height_px, s.planes.page_count(), has_history, header.settings});
+    s.svgf.record(s.recorder, {.cameras = s.cameras.address(),
+                               .visibility = s.surfaces.visibility().address(),
+                               .layers = s.surfaces.layers().address(),
+                               .width = camera.width_px,
+                               .height = camera.height_px,
+                               .page_count = s.planes.page_count(),
+                               .source_count = s.planes.source_count(),
+                               .has_history = has_history,
+                               .settings = header.settings});
     s.record_pack();
     s.recorder.submit();
 
     append_times(s.recorder, timed.render_times);
     s.planes.resize(timed);
     s.svgf.swap();
-    s.previous = camera;
+    s.previous = source_cameras(s.planes);
     s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
     return s.planes;
 }
@@ -124,12 +144,12 @@ std::uint64_t SourceRenderer::invalid_sample_count() const {
 
 struct SurfacePlanesRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s)
-        : device(d), recorder(d), surfaces(d, s), camera(d, sizeof(shared::CameraRecord)) {}
+        : device(d), recorder(d), surfaces(d, s), cameras(d, kMaxSources * sizeof(shared::CameraRecord)) {}
 
     const gpu::Device& device;
     gpu::Recorder recorder;
     SourceSurfaces surfaces;
-    gpu::Buffer camera;
+    gpu::Buffer cameras;
     gpu::Buffer geometry;
 };
 
@@ -144,9 +164,9 @@ void SurfacePlanesRenderer::render(SourcePlanes& planes) {
     if (s.geometry.size_bytes() < geometry_bytes) {
         s.geometry = gpu::Buffer(s.device, geometry_bytes);
     }
-    const shared::CameraRecord record = make_camera_record(planes.camera());
-    gpu::write_buffer(s.device, s.camera, std::as_bytes(std::span(&record, 1)));
-    s.surfaces.record(s.recorder, planes, s.camera.address(), s.geometry);
+    const std::vector<shared::CameraRecord> records = make_camera_records(source_cameras(planes));
+    gpu::write_buffer(s.device, s.cameras, std::as_bytes(std::span(records)));
+    s.surfaces.record(s.recorder, planes, s.cameras.address(), s.geometry);
     s.recorder.submit();
 }
 

@@ -138,6 +138,7 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
+    params.source_count = frame.source_count;
     const Tuning& tuning = tuning_of(frame.settings);
     params.flags = frame.has_history && frame.settings.temporal_accumulation ? shared::kFlagTemporal : 0;
     params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
@@ -154,10 +155,11 @@ void Svgf::record_temporal(gpu::Recorder& recorder, const Frame& frame) {
 void Svgf::record_filter(gpu::Recorder& recorder, const Frame& frame) {
     const Tuning& tuning = tuning_of(frame.settings);
     shared::FilterParams params{};
-    params.camera = frame.cameras;
+    params.cameras = frame.cameras;
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
+    params.source_count = frame.source_count;
     params.sigma_luminance = tuning.sigma_luminance;
     params.sigma_depth = tuning.sigma_depth;
     params.normal_squarings = tuning.normal_squarings;

@@ -34,7 +34,7 @@ class Svgf {
 public:
     Svgf(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// What one frame consists of. `cameras`: current, previous.
+    /// What one frame consists of. `cameras`: of the sources now, then as they were.
     struct Frame {
         std::uint64_t cameras = 0;
         std::uint64_t visibility = 0;
@@ -42,6 +42,7 @@ public:
         std::uint32_t width = 0;
         std::uint32_t height = 0;
         std::uint32_t page_count = 1;
+        std::uint32_t source_count = 1;
         bool has_history = false;
         RenderSettings settings;
     };

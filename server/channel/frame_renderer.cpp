@@ -73,6 +73,8 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
                         ? *fixed_camera_
                         : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
     header.guard_band = info_.guard_band;
+    header.source_positions = config_.source_positions;
+    header.source_geometry = info_.largest_grid.geometry;
     header.settings = settings_;
     return header;
 }

@@ -50,6 +50,7 @@ private:
     void load(const ops::ChannelChoice& channel);
     void settle_lattice();
     void settle_guard_band();
+    void check_planes(const Camera& source) const;
     void warm_up();
 
     FrameHeader pose(std::uint64_t frame_id, const FrameMoment& moment);

@@ -50,6 +50,11 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--largest-grid", text.largest_grid, "ROWSxCOLS that the guard band is made for")
         ->group("Light field")
         ->capture_default_str();
+    app.add_option("--sources", text.sources,
+                   "Path traced views: middle, top-left, diagonal, triangle, corners, or views of the largest grid as in "
+                   "\"0,0;5,5\"")
+        ->group("Light field")
+        ->capture_default_str();
     app.add_option("--guard-band", text.guard_band, "auto, none, or LEFT,RIGHT,TOP,BOTTOM in pixels")
         ->group("Light field")
         ->capture_default_str();
@@ -59,6 +64,13 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     RenderSettings& settings = config.settings;
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
+    app.add_option("--light-candidates", settings.light_sampling.candidates,
+                   "Candidates of which the best is taken as light sample")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_flag("!--one-light-kind", settings.light_sampling.each_kind,
+                 "One shadow ray at the first vertex for all kinds of light instead of one for each")
+        ->group("Rendering");
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
     app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
