@@ -48,6 +48,7 @@ const uint kMaxLayers = 2;
 const uint kFlagNextEventEstimation = 1;
 const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
+const uint kFlagKeepTaps = 8;
 
 // trace_source.comp: path traces every pixel of the source, every page.
 struct TraceSourceParams {
@@ -105,6 +106,13 @@ struct GeometryTexel {
     uint material;
 };
 
+// Which pixels of the frame before entered a pixel's history.
+struct HistoryTaps {
+    vec2 position; // image position, pixels
+    uint accepted; // bits 0 to 3: the bilinear taps, x first; 4 to 12: the 3×3 pixels around, row by row, with weight 1
+};
+SHARED_BUFFER(HistoryTapsBuffer, HistoryTaps);
+
 // temporal.comp: blends the frame with the reprojected history. Reads set 1: kTemporal….
 struct TemporalParams {
     CameraBuffer cameras;        // current, previous
@@ -114,10 +122,11 @@ struct TemporalParams {
     Vec4Buffer specular;
     Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
     FloatBuffer history_length;  // out: frames
+    HistoryTapsBuffer taps;      // out, with kFlagKeepTaps
     uint width;
     uint height;
     uint page_count;
-    uint flags;                  // kFlagTemporal: there is a history
+    uint flags;                  // kFlagTemporal: there is a history; kFlagKeepTaps
     float alpha;                 // least weight of the new frame in illumination
     float moments_alpha;         // … and in the moments
 };
