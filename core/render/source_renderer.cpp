@@ -3,9 +3,9 @@
 
 #include "core/render/camera_record.h"
 #include "core/render/frame_parameters.h"
+#include "core/render/illumination_filter.h"
 #include "core/render/kernels.h"
 #include "core/render/source_surfaces.h"
-#include "core/render/svgf.h"
 
 namespace fieldcast::render {
 
@@ -23,7 +23,7 @@ std::vector<Camera> source_cameras(const SourcePlanes& planes) {
 
 struct SourceRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s)
-        : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), svgf(d, s),
+        : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), filter(d, s),
           trace(make_scene_kernel(d, s, KernelId::kTraceSource, sizeof(shared::TraceSourceParams))),
           pack(make_plain_kernel(d, KernelId::kPackSource, sizeof(shared::PackParams))),
           cameras(d, 2 * kMaxSources * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
@@ -41,7 +41,7 @@ struct SourceRenderer::State {
     gpu::Recorder recorder;
     SourcePlanes planes;
     SourceSurfaces surfaces;
-    Svgf svgf;
+    IlluminationFilter filter;
     gpu::Kernel trace;
     gpu::Kernel pack;
     gpu::Buffer cameras; ///< current, previous
@@ -71,8 +71,8 @@ void SourceRenderer::State::record_trace() {
     params.cameras = cameras.address();
     params.visibility = surfaces.visibility().address();
     params.layers = surfaces.layers().address();
-    params.diffuse = svgf.noisy_diffuse().address();
-    params.specular = svgf.noisy_specular().address();
+    params.diffuse = filter.noisy_diffuse().address();
+    params.specular = filter.noisy_specular().address();
     params.invalid_samples = invalid_samples.address();
     params.width = camera.width_px;
     params.height = camera.height_px;
@@ -90,8 +90,8 @@ void SourceRenderer::State::record_trace() {
 
 void SourceRenderer::State::record_pack() {
     shared::PackParams params{};
-    params.diffuse_in = svgf.diffuse().address();
-    params.specular_in = svgf.specular().address();
+    params.diffuse_in = filter.diffuse().address();
+    params.specular_in = filter.specular().address();
     params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
     params.pixel_count = planes.texel_count();
@@ -112,27 +112,28 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     timed.layer_count = s.scene.has_blend() ? kMaxLayers : 0;
     const bool has_history = s.has_history(header);
     s.planes.resize(timed);
-    s.svgf.resize(s.planes.texel_count());
+    s.filter.resize(s.planes.texel_count());
     s.upload_cameras();
 
-    s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.svgf.geometry());
+    s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.filter.geometry());
     s.record_trace();
     const Camera camera = s.planes.camera();
-    s.svgf.record(s.recorder, {.cameras = s.cameras.address(),
-                               .visibility = s.surfaces.visibility().address(),
-                               .layers = s.surfaces.layers().address(),
-                               .width = camera.width_px,
-                               .height = camera.height_px,
-                               .page_count = s.planes.page_count(),
-                               .source_count = s.planes.source_count(),
-                               .has_history = has_history,
-                               .settings = header.settings});
+    s.filter.record(s.recorder, {.cameras = s.cameras.address(),
+                                 .visibility = s.surfaces.visibility().address(),
+                                 .layers = s.surfaces.layers().address(),
+                                 .width = camera.width_px,
+                                 .height = camera.height_px,
+                                 .page_count = s.planes.page_count(),
+                                 .source_count = s.planes.source_count(),
+                                 .has_history = has_history,
+                                 .number = header.noise_frame,
+                                 .settings = header.settings});
     s.record_pack();
     s.recorder.submit();
 
     append_times(s.recorder, timed.render_times);
     s.planes.resize(timed);
-    s.svgf.swap();
+    s.filter.swap();
     s.previous = source_cameras(s.planes);
     s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
     return s.planes;

@@ -8,7 +8,7 @@
 
 namespace fieldcast::render {
 
-/// Makes SourceFrames: visibility, path tracing, temporal accumulation, SVGF, packing to wire precision.
+/// Makes SourceFrames: visibility, path tracing, temporal accumulation, denoiser, packing to wire precision.
 /// Keeps the history of one camera. Not thread-safe.
 class SourceRenderer {
 public:

@@ -49,6 +49,7 @@ const uint kMaxSources = 8; // as core/lightfield/source_frame.h
 
 const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
+const uint kFlagKeepTaps = 8;
 
 // How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
 const uint kPathCandidatesShift = 16;
@@ -111,6 +112,13 @@ struct GeometryTexel {
     uint material;
 };
 
+// Which pixels of the frame before entered a pixel's history.
+struct HistoryTaps {
+    vec2 position; // image position, pixels
+    uint accepted; // bits 0 to 3: the bilinear taps, x first; 4 to 12: the 3×3 pixels around, row by row, with weight 1
+};
+SHARED_BUFFER(HistoryTapsBuffer, HistoryTaps);
+
 // temporal.comp: blends the frame with the reprojected history. Reads set 1: kTemporal….
 struct TemporalParams {
     CameraBuffer cameras;        // of the sources now, then as they were
@@ -120,11 +128,12 @@ struct TemporalParams {
     Vec4Buffer specular;
     Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
     FloatBuffer history_length;  // out: frames
+    HistoryTapsBuffer taps;      // out, with kFlagKeepTaps
     uint width;
     uint height;
     uint page_count;
     uint source_count;
-    uint flags;                  // kFlagTemporal: there is a history
+    uint flags;                  // kFlagTemporal: there is a history; kFlagKeepTaps
     float alpha;                 // least weight of the new frame in illumination
     float moments_alpha;         // … and in the moments
 };
