@@ -29,6 +29,10 @@ public:
 
     /// Places everything as it is in frame `frame` of 30 per second; frame 0 is a cut.
     void pose(std::uint32_t frame);
+    static std::int64_t time_of_frame_ns(std::uint32_t frame);
+
+    /// From now on `grid()` has so many views, of the same lattice.
+    void choose_grid(std::uint32_t rows, std::uint32_t cols);
 
     Camera source() const; ///< in the current pose
     Camera view(LatticePosition position) const;
@@ -37,6 +41,7 @@ public:
     const Size& size() const { return size_; }
     const scene::Scene& scene() const { return scene_; }
     scene::GpuScene& gpu_scene() { return gpu_scene_; }
+    const scene::GpuScene& gpu_scene() const { return gpu_scene_; }
 
 private:
     Size size_;
@@ -53,7 +58,7 @@ public:
     LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
                   bool has_guard_band);
 
-    /// The scene must be posed for `frame`. Stage times are in the result's header.
+    /// Frame number `frame` of the sequence, with the scene as it is posed now. Stage times are in the result's header.
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);
 
     const render::SourcePlanes& source() const { return *source_; } ///< of the last render()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fieldcast-bench: one subcommand per benchmark.
 #include "bench/commands.h"
+#include "bench/interrupt.h"
 #include "core/base/error.h"
 
 #include <iostream>
@@ -27,6 +28,9 @@ int start(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         return start(argc, argv);
+    } catch (const fieldcast::bench::Interrupted& interrupted) {
+        std::cerr << "\ninterrupted: " << interrupted.what_is_left << '\n';
+        return fieldcast::bench::kInterrupted;
     } catch (const fieldcast::UserError& error) {
         std::cerr << "fieldcast-bench: " << error.what() << '\n';
         return kUserError;
