@@ -20,7 +20,10 @@ void add_holes_command(CLI::App& app);
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 
-/// The references of `quality`.
+/// The metrics of `quality` for two image files.
+void add_compare_command(CLI::App& app);
+
+/// The references of `quality` and `grids`.
 void add_reference_command(CLI::App& app);
 
 } // namespace fieldcast::bench

@@ -19,6 +19,10 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_holes_command(app);
     fieldcast::bench::add_quality_command(app);
     fieldcast::bench::add_reference_command(app);
+    fieldcast::bench::add_compare_command(app);
+    app.footer(
+        "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/benchmarks.md says\n"
+        "what all the numbers mean.");
     CLI11_PARSE(app, argc, argv);
     return 0;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/view_maker.h"
 
+#include "bench/picture_id.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -51,7 +52,9 @@ image::RgbF32 ViewMaker::picture(LatticePosition position) {
     one_sample_->start(scene_.view(position));
     RenderSettings settings;
     settings.exposure = exposure_;
-    one_sample_->accumulate(settings, frame_);
+    // Other noise in each view: equal noise would not average out in refocused images.
+    const ViewIndex index = view_index(position);
+    one_sample_->accumulate(settings, frame_ + 4096U * static_cast<std::uint32_t>(6 * index.row + index.col + 1));
     return {size.width_px, size.height_px, one_sample_->image()};
 }
 
