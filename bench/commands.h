@@ -20,6 +20,9 @@ void add_holes_command(CLI::App& app);
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 
+/// Quality and cost of grids of different sizes (the paper's figure 4).
+void add_grids_command(CLI::App& app);
+
 /// The metrics of `quality` for two image files.
 void add_compare_command(CLI::App& app);
 

@@ -91,6 +91,15 @@ Views LightFieldRun::render(std::uint32_t frame, const std::vector<LatticePositi
     return grid_renderer_.render(*source_, scene_.request(positions));
 }
 
+float choose_exposure(const gpu::Device& device, LightFieldScene& scene, float wanted, const BenchmarkScene& known) {
+    if (wanted > 0.0F || known.exposure > 0.0F) {
+        return wanted > 0.0F ? wanted : known.exposure;
+    }
+    RenderSettings automatic;
+    automatic.exposure = 0.0F;
+    return LightFieldRun(device, scene, automatic, false).header().settings.exposure;
+}
+
 HoleFilling parse_holes(const std::string& text, const ViewGrid& grid) {
     const auto holes = parse_hole_filling(text, grid.rows, grid.cols);
     if (!holes) {

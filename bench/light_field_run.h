@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/benchmark_scene.h"
 #include "bench/measure.h"
 #include "core/render/setup.h"
 #include "core/render/source_renderer.h"
@@ -77,6 +78,9 @@ private:
     GuardBandChoice guard_band_;
     const render::SourcePlanes* source_ = nullptr;
 };
+
+/// `wanted` if it is given (> 0), else that of the benchmark scene, else automatic: renders the first frame.
+float choose_exposure(const gpu::Device& device, LightFieldScene& scene, float wanted, const BenchmarkScene& known);
 
 /// `--holes` of a benchmark. Throws UserError.
 HoleFilling parse_holes(const std::string& text, const ViewGrid& grid);

@@ -18,6 +18,7 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_frame_command(app);
     fieldcast::bench::add_holes_command(app);
     fieldcast::bench::add_quality_command(app);
+    fieldcast::bench::add_grids_command(app);
     fieldcast::bench::add_reference_command(app);
     fieldcast::bench::add_compare_command(app);
     app.footer(

@@ -9,6 +9,8 @@ namespace fieldcast::bench {
 struct PictureId {
     std::uint32_t frame = 0;
     LatticePosition position;
+
+    bool operator==(const PictureId&) const = default;
 };
 
 /// Row and column of a view in the 6×6 grid, in which all results name views.

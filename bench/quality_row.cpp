@@ -4,6 +4,8 @@
 #include "bench/measure.h"
 #include "core/image/metrics.h"
 
+#include <algorithm>
+
 namespace fieldcast::bench {
 
 QualityRow::QualityRow(std::string name, std::unique_ptr<ViewMaker> maker)
@@ -58,10 +60,12 @@ void QualityRow::score_light_field(const ViewGrid& grid, LightFieldPictures& tru
 nlohmann::ordered_json QualityRow::to_json() const {
     nlohmann::ordered_json json = scores_.to_json();
     const bool has_cost = maker_->reuses() && !frame_ms_.empty();
+    const double synthesised = std::max(1.0, sum_.synthesised);
     json["frame_ms"] = has_cost ? nlohmann::ordered_json(median(frame_ms_)) : nullptr;
-    json["traced_share"] =
-        has_cost ? nlohmann::ordered_json(sum_.traced / sum_.synthesised) : nlohmann::ordered_json(1.0);
-    json["discard_share"] = has_cost ? nlohmann::ordered_json(sum_.discarded / sum_.synthesised) : nullptr;
+    json["traced_share"] = has_cost ? nlohmann::ordered_json(sum_.traced / synthesised) : nlohmann::ordered_json(1.0);
+    json["discard_share"] = has_cost ? nlohmann::ordered_json(sum_.discarded / synthesised) : nullptr;
+    json["hole_paths"] =
+        has_cost ? nlohmann::ordered_json(sum_.traced / static_cast<double>(frame_ms_.size())) : nullptr;
     const nlohmann::ordered_json temporal = temporal_.to_json();
     if (!temporal["warped_error"].is_null() || !temporal["flicker"].is_null()) {
         json["temporal"] = temporal;

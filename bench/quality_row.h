@@ -32,7 +32,8 @@ public:
     /// `truth`: references and surfaces of all views of `grid`; its views are filled in.
     void score_light_field(const ViewGrid& grid, LightFieldPictures& truth);
 
-    /// Errors, frame_ms, traced_share, discard_share; temporal and light_field if they were measured. null: not known.
+    /// Errors, frame_ms, traced_share, discard_share, hole_paths per frame; temporal and light_field if they were
+    /// measured. null: not known.
     nlohmann::ordered_json to_json() const;
     const Scores& scores() const { return scores_; }
 

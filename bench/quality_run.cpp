@@ -16,18 +16,6 @@ constexpr const char* kReference = "reference";
 constexpr std::uint32_t kSettle = 30;        // frames at rest before flicker is measured
 constexpr std::uint32_t kRest = kSettle + 8; // all frames at rest
 
-float choose_exposure(const gpu::Device& device, LightFieldScene& scene, const QualitySettings& settings) {
-    if (settings.exposure > 0.0F) {
-        return settings.exposure;
-    }
-    if (settings.scene.exposure > 0.0F) {
-        return settings.scene.exposure;
-    }
-    RenderSettings automatic;
-    automatic.exposure = 0.0F;
-    return LightFieldRun(device, scene, automatic, false).header().settings.exposure;
-}
-
 } // namespace
 
 QualityRun::QualityRun(const gpu::Device& device, const QualitySettings& settings)
@@ -36,7 +24,7 @@ QualityRun::QualityRun(const gpu::Device& device, const QualitySettings& setting
     if (settings.has_light_field && settings.renders_scored_views_only) {
         throw UserError("--light-field needs all views: leave out --scored-views");
     }
-    exposure_ = choose_exposure(device, scene_, settings);
+    exposure_ = choose_exposure(device, scene_, settings.exposure, settings.scene);
     add_rows(device);
 }
 
@@ -146,7 +134,7 @@ void QualityRun::keep(const std::string& name, const PictureId& id, const image:
     if (!settings_.out.empty()) {
         write_picture(settings_.out, picture_name(name, id), linear, exposure_);
     }
-    if (id.frame == shown_id().frame && id.position == shown_id().position) {
+    if (id == shown_id()) {
         shown_.push_back({name, linear});
     }
 }

@@ -97,6 +97,15 @@ void print_quality_table(std::ostream& stream, const Json& result) {
     }
 }
 
+Json csv_origin(const Json& result) {
+    return {{"machine", result["processor"].get<std::string>() + "; " + result["device"].get<std::string>()},
+            {"commit", result["commit"]},
+            {"command", result["command"]},
+            {"scene", result["scene"]},
+            {"protocol", result["protocol"].get<std::string>() + " " + result["size"].get<std::string>() +
+                             ", references of " + result["reference_samples"].dump() + " samples"}};
+}
+
 const std::vector<std::string>& quality_columns() {
     static const std::vector<std::string> columns{
         "machine",  "commit",        "command",      "scene",         "protocol",     "input",
@@ -109,13 +118,8 @@ const std::vector<std::string>& quality_columns() {
 std::vector<Json> quality_csv_rows(const Json& result) {
     std::vector<Json> lines;
     for (const auto& [name, row] : result["rows"].items()) {
-        Json line{{"machine", result["processor"].get<std::string>() + "; " + result["device"].get<std::string>()},
-                  {"commit", result["commit"]},
-                  {"command", result["command"]},
-                  {"scene", result["scene"]},
-                  {"protocol", result["protocol"].get<std::string>() + " " + result["size"].get<std::string>() +
-                                   ", references of " + result["reference_samples"].dump() + " samples"},
-                  {"input", name}};
+        Json line = csv_origin(result);
+        line["input"] = name;
         line.update(row);
         for (const char* part : {"temporal", "light_field"}) {
             if (row.contains(part)) {
