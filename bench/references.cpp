@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/references.h"
 
+#include "bench/interrupt.h"
+#include "bench/progress.h"
 #include "core/base/error.h"
 
 #include <chrono>
@@ -55,7 +57,8 @@ std::uint32_t References::samples_of(std::uint32_t frame, LatticePosition positi
     const auto json = nlohmann::ordered_json::parse(stream, nullptr, false);
     const bool is_ours = json.is_object() && json.contains("of") && json["of"] == description() &&
                          json.contains("samples_per_pixel") && json["samples_per_pixel"].is_number_unsigned();
-    return is_ours && std::filesystem::exists(file_of(frame, position)) ? json["samples_per_pixel"].get<std::uint32_t>() : 0;
+    return is_ours && std::filesystem::exists(file_of(frame, position)) ? json["samples_per_pixel"].get<std::uint32_t>()
+                                                                        : 0;
 }
 
 void References::save(const std::filesystem::path& file, const Camera& camera) const {
@@ -99,6 +102,35 @@ std::optional<image::RgbF32> References::get(std::uint32_t frame, LatticePositio
                                  " invalid samples");
     }
     return image::RgbF32{camera.width_px, camera.height_px, renderer_.image()};
+}
+
+void make_references(LightFieldScene& scene, References& references, const std::vector<PictureId>& wanted,
+                     std::uint32_t samples) {
+    double missing = 0.0;
+    for (const PictureId& picture : wanted) {
+        const std::uint32_t lacking = samples - std::min(references.samples_of(picture.frame, picture.position), samples);
+        missing += (lacking + kBatch - 1) / kBatch * kBatch;
+    }
+    if (missing == 0.0) {
+        return;
+    }
+    Progress progress("references", missing);
+    const InterruptGuard guard;
+    for (const PictureId& picture : wanted) {
+        std::uint32_t before = references.samples_of(picture.frame, picture.position);
+        if (before >= samples) {
+            continue;
+        }
+        scene.pose(picture.frame);
+        const auto report = [&](std::uint32_t done) {
+            progress.add(done - before);
+            before = done;
+            return !guard.is_interrupted();
+        };
+        if (!references.get(picture.frame, picture.position, samples, report)) {
+            throw Interrupted{"the references made so far are kept, the same command goes on from there"};
+        }
+    }
 }
 
 } // namespace fieldcast::bench

@@ -72,6 +72,7 @@ struct GridRenderer::State {
     void record_tone_map(const FrameHeader& header);
     Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
     DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
+    std::vector<glm::uvec2> download_visibility(std::size_t view) const;
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
 
     const gpu::Device& device;
@@ -307,6 +308,13 @@ Views GridRenderer::State::download(const FrameHeader& header, const std::vector
     return result;
 }
 
+/// (instance, primitive) of each pixel.
+std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t view) const {
+    FC_ASSERT(view < wanted, "no such view");
+    const std::size_t count = static_cast<std::size_t>(request.width_px) * request.height_px;
+    return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * padded_pixels(request) * view);
+}
+
 GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
     : state_(std::make_unique<State>(device, scene)) {}
 
@@ -356,12 +364,15 @@ LinearView GridRenderer::linear_view(std::size_t index) const {
 }
 
 std::vector<float> GridRenderer::view_depth(std::size_t index) const {
-    const State& s = *state_;
-    FC_ASSERT(index < s.wanted, "no such view");
-    const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
-    const auto seen = gpu::read_buffer_as<glm::uvec2>(s.device, s.visibility, count,
-                                                      8ULL * padded_pixels(s.request) * index);
-    return depth_of_visibility(s.scene, s.view_cameras[index], seen);
+    return depth_of_visibility(state_->scene, state_->view_cameras.at(index), state_->download_visibility(index));
+}
+
+std::vector<std::uint32_t> GridRenderer::view_instances(std::size_t index) const {
+    std::vector<std::uint32_t> instances;
+    for (const glm::uvec2 seen : state_->download_visibility(index)) {
+        instances.push_back(seen.x); // shared::kNoInstance is scene::kNone
+    }
+    return instances;
 }
 
 std::vector<bool> GridRenderer::hole_mask(std::size_t index) const {
