@@ -152,7 +152,7 @@ void main() {
     }
     keep_taps(index, p.xy, history.accepted);
     float scale = 1.0 / history.weight;
-    float frames = min(history.frames * scale + 1.0, kMaxHistory);
+    float frames = min(history.frames * scale + 1.0, params.alpha > 0.0 ? kMaxHistory : 1e6);
     float alpha = max(params.alpha, 1.0 / frames);
     store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
           mix(history.moments * scale, moments, max(params.moments_alpha, 1.0 / frames)), frames);

@@ -31,7 +31,7 @@ void main() {
     Illumination traced = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,
                                              1.0 / camera.focal_px, seed);
     HoleLight light = unpack_hole_light(frame.light.at[number]);
-    light.frames = min(light.frames + 1.0, 32.0);
+    light.frames = min(light.frames + 1.0, params.alpha > 0.0 ? 32.0 : 2048.0); // as half floats count
     float alpha = max(params.alpha, 1.0 / light.frames);
     light.diffuse = mix(light.diffuse, traced.diffuse, alpha);
     light.specular = mix(light.specular, traced.specular, alpha);

@@ -66,6 +66,8 @@ struct RenderSettings {
     Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2
+    /// Reference mode: while nothing moves, frames are averaged without limits and without denoiser.
+    bool accumulate = false;
     ToneMap tone_map = ToneMap::kClampSrgb;
     float exposure = 1.0F; ///< multiplies linear radiance before the tone map
     ReprojectionThresholds reprojection;

@@ -38,6 +38,9 @@ struct FrameHeader {
     /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below the
     /// images' in the illumination planes, which are (1 + layer_count) times as high.
     std::uint32_t layer_count = 0;
+    /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
+    /// (accumulate); 0: the usual way.
+    std::uint32_t still_frames = 0;
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;

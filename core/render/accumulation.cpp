@@ -91,10 +91,10 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.height = frame.height;
     params.page_count = frame.page_count;
     params.source_count = frame.source_count;
-    params.flags = (frame.has_history && frame.settings.temporal_accumulation ? shared::kFlagTemporal : 0) |
+    params.flags = (frame.has_history ? shared::kFlagTemporal : 0) |
                    (options.keeps_taps ? shared::kFlagKeepTaps : 0);
-    params.alpha = frame.settings.temporal_alpha * options.share;
-    params.moments_alpha = frame.settings.temporal_alpha;
+    params.alpha = frame.least_weight * options.share;
+    params.moments_alpha = frame.least_weight;
     recorder.stage("temporal");
     recorder.dispatch(kernel_, {&scene_.bindings(), &sets_[current_]}, params, linear_groups(texel_count_));
     recorder.barrier();

@@ -49,7 +49,9 @@ struct FilterFrame {
     std::uint32_t height = 0;
     std::uint32_t page_count = 1;
     std::uint32_t source_count = 1;
-    bool has_history = false;
+    bool has_history = false; ///< that may enter the average
+    bool is_still = false;    ///< one of a series that is averaged and not filtered
+    float least_weight = 1.0F; ///< of the new frame in the average
     std::uint32_t number = 0; ///< of the frame: what varies from frame to frame
     RenderSettings settings;
 };
@@ -65,7 +67,7 @@ public:
     void resize(std::uint32_t texel_count); ///< pixels of all pages
     std::uint32_t texel_count() const { return texel_count_; }
 
-    /// The new frame's share of the average is at least `share` · temporal_alpha. `keeps_taps`: fills `taps()`.
+    /// The new frame's share of the average is at least `share` · least_weight. `keeps_taps`: fills `taps()`.
     struct Options {
         float share = 1.0F;
         bool keeps_taps = false;

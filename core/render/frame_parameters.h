@@ -21,9 +21,24 @@ inline std::uint32_t path_bits(const RenderSettings& settings) {
            (settings.light_sampling.each_kind ? shared::kPathEachLightKind : 0U);
 }
 
+/// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias.
+inline HoleFilling hole_filling(const FrameHeader& header) {
+    HoleFilling averaged = HoleFilling::path_traced();
+    averaged.previous_frame = true;
+    return header.still_frames > 0 ? averaged : header.settings.holes;
+}
+
+/// Least weight of a new frame in an average; 0: all frames weigh the same.
+inline float least_weight(const FrameHeader& header) {
+    return header.still_frames > 0 ? 0.0F : header.settings.temporal_alpha;
+}
+
 /// Luminance above which one indirect contribution is cut: relative to the frame's mean, which exposure brings to 0.18.
 inline float max_indirect(const RenderSettings& settings) {
     return settings.indirect_clamp * 0.18F / settings.exposure;
+}
+inline float max_indirect(const FrameHeader& header) {
+    return header.still_frames > 0 ? 0.0F : max_indirect(header.settings);
 }
 
 inline shared::ReprojectSettings reproject_settings(const FrameHeader& header) {

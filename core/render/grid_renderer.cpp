@@ -146,12 +146,12 @@ ViewHistory& GridRenderer::State::find_history() {
 HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, const ViewRequest& asked) {
     ViewRequest next = asked;
     HoleFiller::Batch batch{.width = asked.width_px, .height = asked.height_px};
-    batch.corners = choose_corners(header.settings.holes, next.positions);
+    batch.corners = choose_corners(hole_filling(header), next.positions);
     batch.view_count = static_cast<std::uint32_t>(next.positions.size());
     request = std::move(next);
     ViewHistory& history = find_history();
     batch.history = &history.holes;
-    batch.has_history = !header.cut && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
+    batch.has_history = !header.cut && header.still_frames != 1 && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
     history.holes.current = 1 - history.holes.current;
     history.pose_count = scene.pose_count();
     wanted = asked.positions.size();
@@ -267,7 +267,7 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     params.height = request.height_px;
     params.samples_per_pixel = header.settings.samples_per_pixel;
     params.path = path_bits(header.settings);
-    params.max_indirect = max_indirect(header.settings);
+    params.max_indirect = max_indirect(header);
     params.layer_count = header.layer_count;
     params.settings = reproject_settings(header);
     recorder.stage("layers");

@@ -7,6 +7,11 @@ IlluminationFilter::IlluminationFilter(const gpu::Device& device, const scene::G
     : accumulation_(device, scene), svgf_(device, accumulation_), result_(&accumulation_.noisy()) {}
 
 void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+    if (frame.is_still) {
+        accumulation_.record(recorder, frame, {});
+        result_ = &accumulation_.now().light;
+        return;
+    }
     switch (frame.settings.denoiser) {
     case Denoiser::kNone:
         result_ = &accumulation_.noisy();

@@ -32,6 +32,7 @@ struct SourceRenderer::State {
     }
 
     bool has_history(const FrameHeader& header) const;
+    std::uint32_t still_frames(const FrameHeader& header) const;
     void upload_cameras();
     void record_trace();
     void record_pack();
@@ -47,6 +48,7 @@ struct SourceRenderer::State {
     gpu::Buffer cameras; ///< current, previous
     gpu::Buffer invalid_samples;
     std::vector<Camera> previous; ///< of the sources of the frame before
+    FrameHeader last;             ///< header of that frame
     bool has_stored_history = false; ///< the frame before accumulated or filtered
 };
 
@@ -54,6 +56,14 @@ bool SourceRenderer::State::has_history(const FrameHeader& header) const {
     const Camera now = widened_source(header, 0);
     return has_stored_history && !header.cut && previous.size() == header.source_positions.size() &&
            previous[0].width_px == now.width_px && previous[0].height_px == now.height_px;
+}
+
+// Frames without motion up to this one, as far as they are averaged.
+std::uint32_t SourceRenderer::State::still_frames(const FrameHeader& header) const {
+    const bool is_still = !previous.empty() && !header.cut && header.source == last.source &&
+                          header.source_positions == last.source_positions && header.guard_band == last.guard_band &&
+                          header.scene_time_ns == last.scene_time_ns && header.settings == last.settings;
+    return header.settings.accumulate && is_still ? last.still_frames + 1 : 0;
 }
 
 void SourceRenderer::State::upload_cameras() {
@@ -81,7 +91,7 @@ void SourceRenderer::State::record_trace() {
     params.samples_per_pixel = header.settings.samples_per_pixel;
     params.source_count = planes.source_count();
     params.path = path_bits(header.settings);
-    params.max_indirect = max_indirect(header.settings);
+    params.max_indirect = max_indirect(header);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
                       {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), planes.page_count()});
@@ -110,7 +120,10 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     FrameHeader timed = header;
     timed.render_times.clear();
     timed.layer_count = s.scene.has_blend() ? kMaxLayers : 0;
-    const bool has_history = s.has_history(header);
+    timed.still_frames = s.still_frames(header);
+    const bool is_still = timed.still_frames > 0;
+    const bool has_history = is_still ? timed.still_frames > 1 // a series begins with its own first frame
+                                      : s.has_history(header) && header.settings.temporal_accumulation;
     s.planes.resize(timed);
     s.filter.resize(s.planes.texel_count());
     s.upload_cameras();
@@ -126,6 +139,8 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
                                  .page_count = s.planes.page_count(),
                                  .source_count = s.planes.source_count(),
                                  .has_history = has_history,
+                                 .is_still = is_still,
+                                 .least_weight = least_weight(timed),
                                  .number = header.noise_frame,
                                  .settings = header.settings});
     s.record_pack();
@@ -135,7 +150,8 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.planes.resize(timed);
     s.filter.swap();
     s.previous = source_cameras(s.planes);
-    s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
+    s.last = timed;
+    s.has_stored_history = is_still || header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
     return s.planes;
 }
 

@@ -232,6 +232,7 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     sources_to_proto(header, *message.mutable_sources());
     to_proto(header.settings, *message.mutable_settings());
     message.set_layer_count(header.layer_count);
+    message.set_still_frames(header.still_frames);
     message.clear_render_times();
     for (const StageTime& stage : header.render_times) {
         v1::StageTime& entry = *message.add_render_times();
@@ -261,6 +262,7 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
         return decode_error("header.layer_count: " + std::to_string(message.layer_count()) + ", expected 0 or 2");
     }
     header.layer_count = message.layer_count();
+    header.still_frames = message.still_frames();
     if (message.has_sources()) {
         if (const auto read = sources_from_proto(message.sources(), header); !read) {
             return tl::unexpected(read.error());

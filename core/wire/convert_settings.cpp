@@ -127,6 +127,7 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     message.mutable_light_sampling()->set_candidates(settings.light_sampling.candidates);
     message.mutable_light_sampling()->set_each_kind(settings.light_sampling.each_kind);
     to_proto(settings.holes, *message.mutable_holes());
+    message.set_accumulate(settings.accumulate);
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
@@ -162,6 +163,7 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
         return tl::unexpected(holes.error());
     }
     settings.holes = *holes;
+    settings.accumulate = message.accumulate();
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }

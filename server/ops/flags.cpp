@@ -72,6 +72,9 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
                  "One shadow ray at the first vertex for all kinds of light instead of one for each")
         ->group("Rendering");
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
+    app.add_flag("--accumulate", settings.accumulate,
+                 "While nothing moves, average frames without bias instead of denoising them")
+        ->group("Rendering");
     app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
