@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/config.h"
 
+#include "core/base/error.h"
+#include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -27,14 +28,6 @@ void expect(Problems& problems, bool is_right, const char* flag, const T& value,
         line << flag << ' ' << value << ": " << allowed;
         problems.push_back(line.str());
     }
-}
-
-bool is_loopback(const std::string& host) {
-    in_addr four{};
-    if (inet_pton(AF_INET, host.c_str(), &four) == 1) {
-        return (ntohl(four.s_addr) >> 24) == 127;
-    }
-    return host == "localhost" || host == "[::1]";
 }
 
 void check_channels(const Config& config, Problems& problems) {
@@ -100,16 +93,37 @@ void check_rendering(const Config& config, Problems& problems) {
 }
 
 void check_serving(const Config& config, Problems& problems) {
-    expect(problems, is_loopback(config.listen.host), "--listen", config.listen.host,
-           "only loopback addresses (127.0.0.1, [::1], localhost), as there is no encryption yet");
-    expect(problems, config.listen.port >= 0 && config.listen.port <= 65535, "--listen", config.listen.port,
-           "a port is 0 to 65535");
     expect(problems, config.listen.port != 0 || config.port_file.has_value(), "--listen", "port 0",
            "only together with --port-file, which tells the port");
     expect(problems, config.limits.max_sessions >= 1 && config.limits.max_sessions <= 4096, "--max-sessions",
            config.limits.max_sessions, "1 to 4096");
     expect(problems, config.limits.max_sessions_per_peer >= 1, "--max-sessions-per-peer",
            config.limits.max_sessions_per_peer, "at least 1");
+}
+
+/// Runs `check`, which throws UserError.
+template <class Check> void expect_usable(Problems& problems, const char* flag, const Check& check) {
+    try {
+        check();
+    } catch (const UserError& problem) {
+        problems.push_back(std::string(flag) + " " + problem.what());
+    }
+}
+
+void check_access(const Config& config, Problems& problems) {
+    const access::Security& security = config.security;
+    const access::Protection protection{.has_tls = security.certificates.has_value(),
+                                        .has_tokens = security.tokens.has_value()};
+    if (const auto problem = access::listening_problem(config.listen.host, protection)) {
+        problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
+    }
+    if (security.tokens) {
+        expect_usable(problems, "--tokens", [&] { access::TokenList::read(*security.tokens); });
+    }
+    if (security.certificates) {
+        const auto now = std::chrono::system_clock::now();
+        expect_usable(problems, "--tls-cert", [&] { access::check_certificate(*security.certificates, now); });
+    }
 }
 
 } // namespace
@@ -120,6 +134,7 @@ std::vector<std::string> problems_of(const Config& config) {
     check_lattice(config, problems);
     check_rendering(config, problems);
     check_serving(config, problems);
+    check_access(config, problems);
     return problems;
 }
 

@@ -15,6 +15,8 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --scene hall.glb --environment noon.exr --size 640x360 --fps 15
   fieldcast-server --channel red=a.gltf --channel blue=b.gltf --listen 127.0.0.1:0 --port-file port.txt
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
+  fieldcast-server --make-token alice view
+  fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
 
 TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input.)";
 
@@ -83,7 +85,8 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
 }
 
 void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
-    app.add_option("--listen", text.listen, "HOST:PORT, loopback only; port 0: any, with --port-file")
+    app.add_option("--listen", text.listen,
+                   "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
@@ -98,6 +101,17 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
         ->capture_default_str();
 }
 
+void add_security_flags(CLI::App& app, FlagText& text) {
+    app.add_option("--tls-cert", text.tls_cert, "PEM file: certificate of the server and what links it to a root")
+        ->group("Security");
+    app.add_option("--tls-key", text.tls_key, "PEM file: its private key, without passphrase")->group("Security");
+    app.add_option("--tls-client-ca", text.tls_client_ca,
+                   "PEM file: clients must show a certificate that one of these has signed")
+        ->group("Security");
+    app.add_option("--tokens", text.tokens, "Who may call: lines of NAME ROLE sha256:HEX, see --make-token")
+        ->group("Security");
+}
+
 /// What is set, or has a default, as a --config file. CLI11 writes what is unset as an empty text, which is no value.
 std::string config_file(const CLI::App& app) {
     std::istringstream lines(app.config_to_str(true, false));
@@ -106,6 +120,27 @@ std::string config_file(const CLI::App& app) {
         text += line.ends_with("=\"\"") || line.empty() ? "" : line + '\n';
     }
     return text;
+}
+
+/// A new token called words[0] with the role words[1].
+Invocation token_invocation(const std::vector<std::string>& words) {
+    Invocation invocation;
+    invocation.kind = Invocation::Kind::kPrint;
+    const auto role = access::parse_role(words.at(1));
+    if (!access::is_token_name(words.at(0))) {
+        invocation.problems.emplace_back("--make-token: a name has 1 to 64 letters, digits, '.', '_' or '-'");
+    }
+    if (!role) {
+        invocation.problems.emplace_back("--make-token: a role is view, steer or admin");
+    }
+    if (!invocation.problems.empty()) {
+        return invocation;
+    }
+    const std::string token = access::make_token();
+    const access::Identity identity{.name = words[0], .role = *role, .hash = access::hash_token(token)};
+    invocation.text = "# For the client: the file of --token-file, or FIELDCAST_TOKEN. It is kept nowhere else.\n" +
+                      token + "\n# For the server: a line of the file of --tokens.\n" + token_line(identity) + "\n";
+    return invocation;
 }
 
 /// Parses; what CLI11 has to say, if that ends the program.
@@ -132,6 +167,7 @@ Invocation read_flags(int argc, const char* const* argv) {
     FlagText text;
     bool only_check = false;
     bool only_print = false;
+    std::vector<std::string> new_token;
     CLI::App app("Path traces light fields and streams them to many displays.", "fieldcast-server");
     app.footer(kExamples);
     app.set_config("--config", "", "TOML file with the flags' names");
@@ -139,17 +175,24 @@ Invocation read_flags(int argc, const char* const* argv) {
     app.add_flag("--check-config", only_check, "Validate, report all problems, exit")->configurable(false);
     app.add_flag("--print-config", only_print, "Print what would be used, as a --config file, and exit")
         ->configurable(false);
+    app.add_option("--make-token", new_token, "NAME ROLE: print a new token and its line for --tokens, and exit")
+        ->type_size(2)
+        ->expected(1)
+        ->configurable(false);
     add_scene_flags(app, text, invocation.config);
     add_image_flags(app, text, invocation.config);
     add_render_flags(app, text, invocation.config);
     add_serving_flags(app, text, invocation.config);
+    add_security_flags(app, text);
     if (auto early = parse(app, argc, argv)) {
         return *early;
     }
-    read_text(text, invocation.config, invocation.problems);
-    if (invocation.problems.empty()) {
-        invocation.problems = problems_of(invocation.config);
+    if (!new_token.empty()) {
+        return token_invocation(new_token);
     }
+    read_text(text, invocation.config, invocation.problems);
+    const std::vector<std::string> further = problems_of(invocation.config);
+    invocation.problems.insert(invocation.problems.end(), further.begin(), further.end());
     if (only_print) {
         invocation.kind = Invocation::Kind::kPrint;
         invocation.text = config_file(app);
