@@ -149,6 +149,9 @@ TEST(Flags, PortZeroNeedsAPortFile) {
 
 TEST(Flags, UnknownFlagsAreProblems) {
     EXPECT_THAT(read({"--scene", kFile, "--colour"}).problems, Contains(HasSubstr("--colour")));
+    EXPECT_THAT(read({"--scene", kFile, "--max-sesions", "3"}).problems,
+                Contains(HasSubstr("did you mean --max-sessions?")));
+    EXPECT_THAT(read({"--scene", kFile, "dangling"}).problems, Contains(HasSubstr("dangling")));
 }
 
 TEST(Flags, HelpHasExamplesAndEveryGroup) {
@@ -162,7 +165,7 @@ TEST(Flags, HelpHasExamplesAndEveryGroup) {
 
 TEST(Flags, PrintsAConfigFileThatItReads) {
     const Invocation printed = read({"--scene", kFile, "--fps", "12", "--no-nee", "--print-config"});
-    EXPECT_THAT(printed.text, HasSubstr("fps=12"));
+    EXPECT_THAT(printed.text, HasSubstr("fps = 12\n"));
     const std::string file = testing::TempDir() + "server_flags_test.toml";
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});

@@ -10,7 +10,8 @@ fieldcast_test(server_session_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
     DEPENDS fieldcast_server_ops)
 find_package(OpenSSL REQUIRED)
 add_library(certificate_authority STATIC ${CMAKE_CURRENT_LIST_DIR}/certificate_authority.cpp)
