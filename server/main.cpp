@@ -82,13 +82,15 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
     const Channels channels = start_channels(device, config);
     const auto feeds = feeds_of(channels);
-    service::GrpcServer server(config.listen, feeds, config.limits);
+    service::GrpcServer server(config.listen, feeds, config.limits, config.security);
     std::optional<ops::PortFile> port_file;
     if (config.port_file) {
         port_file.emplace(*config.port_file, server.port());
     }
-    log::info("SERVING",
-              {{"listen", config.listen.host + ":" + std::to_string(server.port())}, {"channels", channels.size()}});
+    log::info("SERVING", {{"listen", to_text({.host = config.listen.host, .port = server.port()})},
+                          {"tls", config.security.certificates.has_value()},
+                          {"tokens", config.security.tokens.has_value()},
+                          {"channels", channels.size()}});
     const bool is_signal = serve(signals, feeds);
     drain(signals, server, is_signal ? "the server is shutting down" : "a channel failed");
     return is_signal ? kOk : kMachineFailed;

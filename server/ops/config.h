@@ -63,8 +63,9 @@ struct Config {
     bool has_validation = false;
 
     // Serving.
-    service::ListenAddress listen;
+    HostPort listen = service::kDefaultListen;
     std::optional<std::filesystem::path> port_file;
+    access::Security security;
     session::Limits limits;
     std::uint64_t max_channel_pixels = 2 * 72ULL * 1280 * 720; ///< views of one frame, over all clients
     log::Level log_level = log::Level::kInfo;

@@ -27,6 +27,10 @@ struct FlagText {
     std::string clock = "real";
     std::string listen = "127.0.0.1:50151";
     std::string port_file;
+    std::string tls_cert;
+    std::string tls_key;
+    std::string tls_client_ca;
+    std::string tokens;
     std::string log_level = "info";
 };
 

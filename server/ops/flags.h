@@ -12,7 +12,7 @@ namespace fieldcast::ops {
 struct Invocation {
     enum class Kind : std::uint8_t {
         kServe,
-        kPrint, ///< only print `text`: --help, --version, --print-config
+        kPrint, ///< only print `text`: --help, --version, --print-config, --make-token
         kCheck, ///< only validate
     };
     Kind kind = Kind::kServe;
@@ -21,7 +21,7 @@ struct Invocation {
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. Touches nothing but files it checks for existence.
+/// Reads flags, or a --config file with the same names. Reads files that flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

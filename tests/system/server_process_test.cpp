@@ -103,6 +103,15 @@ TEST(ServerProcess, ChecksAConfiguration) {
     EXPECT_EQ(server.wait(), 0) << server.text();
 }
 
+TEST(ServerProcess, WrongConfigurationExitsWithTwoAndNamesThePlace) {
+    const std::string file = testing::TempDir() + "server_process_" + std::to_string(getpid()) + ".toml";
+    std::ofstream(file) << "scene = \"" << kScene << "\"\n\nspp = 0\n";
+    Process server({"--config", file, "--check-config"});
+    EXPECT_EQ(server.wait(), 2);
+    EXPECT_NE(server.text().find(file + ":3: spp 0"), std::string::npos) << server.text();
+    std::filesystem::remove(file);
+}
+
 /// A server that renders small images of the demo scene.
 class RenderingServer : public testing::Test {
 protected:
