@@ -12,8 +12,9 @@ fieldcast_test(server_session_test LABELS quick
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
     DEPENDS fieldcast_server_ops)
-fieldcast_test(server_clock_test LABELS quick
+fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
     DEPENDS fieldcast_server_channel)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
 # like a race. What the server's own threads share is in server_session_test.
