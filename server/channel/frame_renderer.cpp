@@ -30,11 +30,6 @@ struct Batch {
     render::ViewRequest request;
 };
 
-bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b) {
-    b.codec = a.codec;
-    return a == b;
-}
-
 std::vector<Batch> batches_of(const feed::Demand& demand) {
     std::vector<Batch> batches;
     for (const feed::ViewDemand& set : demand.views) {
@@ -61,6 +56,11 @@ std::vector<Batch> batches_of(const feed::Demand& demand) {
 
 } // namespace
 
+bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b) {
+    b.codec = a.codec;
+    return a == b;
+}
+
 FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& moment) {
     gpu_scene_->pose(moment.scene_time_ns, moment.cut);
     FrameHeader header;
@@ -81,6 +81,8 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
 
 RenderedFrame FrameRenderer::render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand) {
     RenderedFrame frame;
+    frame.needs_alone = demand.needs_alone;
+    frame.needs_key = demand.needs_key;
     frame.times.pose_sampled_ns = steady_ns();
     const FrameHeader header = pose(frame_id, moment);
     frame.times.render_begin_ns = steady_ns();

@@ -22,6 +22,9 @@ struct RenderedViews {
     Views views;
 };
 
+/// Whether one rendering serves both formats.
+bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b);
+
 /// One frame, not yet encoded.
 struct RenderedFrame {
     FrameHeader header;
@@ -29,6 +32,8 @@ struct RenderedFrame {
     std::optional<SourceFrame> source; ///< the planes named in `choices`
     std::vector<wire::PlaneChoice> choices;
     std::vector<RenderedViews> views;
+    bool needs_alone = false; ///< as in feed::Demand
+    bool needs_key = false;   ///< as in feed::Demand
 };
 
 /// A scene on the device with both renderers, for one channel. Not thread-safe; may be used by one thread after

@@ -20,8 +20,9 @@ target_link_libraries(certificate_authority PRIVATE OpenSSL::Crypto GTest::gtest
 fieldcast_test(server_access_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_access_test.cpp
     DEPENDS certificate_authority fieldcast_server_access)
-fieldcast_test(server_clock_test LABELS quick
+fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
     DEPENDS fieldcast_server_channel)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
 # like a race. What the server's own threads share is in server_session_test.
