@@ -18,6 +18,8 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --scene hall.glb --environment noon.exr --size 640x360 --fps 15
   fieldcast-server --channel red=a.gltf --channel blue=b.gltf --listen 127.0.0.1:0 --port-file port.txt
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
+  fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
+  fieldcast-server render --help                                                # what else it can write
   fieldcast-server --make-token alice view
   fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
 
@@ -130,6 +132,31 @@ void add_security_flags(CLI::App& app, FlagText& text) {
         ->group("Security");
 }
 
+void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>& products) {
+    const auto add = [&](CLI::Option* option) { option->group("render")->configurable(false); };
+    add(app.add_option("--out", job.out, "Folder for the files")->capture_default_str());
+    add(app.add_option("--count", job.frame_count, "Frames to render, 1/fps apart, from a cold start")
+            ->check(CLI::Range(1U, 1U << 24U))
+            ->capture_default_str());
+    add(app.add_flag("--every-frame", job.writes_every_frame, "Write all frames, each to a folder; else the last"));
+    add(app.add_option("--reference", job.reference_samples,
+                       "Path trace every view of the last frame with so many samples, reuse nothing; also an EXR each")
+            ->check(CLI::Range(1U, 1U << 20U)));
+    add(app.add_option("--write", products, "quilt, views, contact-sheet, look-around, exr (the source's planes)")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
+            ->capture_default_str());
+}
+
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
+    return {.quilt = has("quilt"),
+            .views = has("views"),
+            .contact_sheet = has("contact-sheet"),
+            .look_around = has("look-around"),
+            .source_exr = has("exr")};
+}
+
 /// Everything that can be typed, and where it goes.
 struct CommandLine {
     CLI::App app{"Path traces light fields and streams them to many displays.", "fieldcast-server"};
@@ -139,8 +166,11 @@ struct CommandLine {
     bool only_check = false;
     bool only_print = false;
     std::vector<std::string> new_token;
+    bool renders = false; ///< "render" came first
+    OfflineJob job;
+    std::vector<std::string> products{"quilt", "views", "exr"};
 
-    CommandLine() {
+    explicit CommandLine(bool is_offline = false) : renders(is_offline) {
         app.footer(kExamples);
         app.allow_extras(); // so that all of them can be told
         app.set_version_flag("--version", "fieldcast-server " FIELDCAST_VERSION);
@@ -157,6 +187,9 @@ struct CommandLine {
         add_render_flags(app, text, config);
         add_serving_flags(app, text, config);
         add_security_flags(app, text);
+        if (renders) {
+            add_offline_flags(app, job, products);
+        }
     }
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
@@ -203,7 +236,7 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         file = read_config_file(typed.config_file, typed.app);
         check_each(file);
     }
-    CommandLine all;
+    CommandLine all(typed.renders);
     std::vector<std::string> merged(file.arguments);
     merged.insert(merged.end(), arguments.begin(), arguments.end());
     Invocation invocation;
@@ -220,6 +253,10 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
     } else if (all.only_check) {
         invocation.kind = Invocation::Kind::kCheck;
+    } else if (all.renders) {
+        invocation.kind = Invocation::Kind::kRender;
+        invocation.job = std::move(all.job);
+        invocation.job.products = read_products(all.products);
     }
     invocation.config = std::move(all.config);
     return invocation;
@@ -249,8 +286,9 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
 } // namespace
 
 Invocation read_flags(int argc, const char* const* argv) {
-    CommandLine typed;
-    return read({argv + 1, argv + argc}, typed);
+    const bool renders = argc > 1 && std::string_view(argv[1]) == "render";
+    CommandLine typed(renders);
+    return read({argv + (renders ? 2 : 1), argv + argc}, typed);
 }
 
 } // namespace fieldcast::ops
