@@ -23,6 +23,9 @@ void add_quality_command(CLI::App& app);
 /// Quality and cost of grids of different sizes (the paper's figure 4).
 void add_grids_command(CLI::App& app);
 
+/// The report of `quality` from what it wrote into a folder.
+void add_report_command(CLI::App& app);
+
 /// The metrics of `quality` for two image files.
 void add_compare_command(CLI::App& app);
 

@@ -2,6 +2,7 @@
 // `fieldcast-bench grids`: does quality depend on how many views a client asks for (the paper's figure 4)?
 #include "bench/commands.h"
 #include "bench/csv.h"
+#include "bench/grids_page.h"
 #include "bench/grids_run.h"
 #include "bench/protocol_options.h"
 #include "bench/provenance.h"
@@ -21,6 +22,7 @@ struct GridsOptions {
     std::string preset = "ours";
     std::string json;
     std::string csv;
+    std::string html;
     double exposure = 0.0;
     bool scores_all_frames = false;
 };
@@ -98,6 +100,9 @@ void run_grids(const GridsOptions& options) {
     if (!options.json.empty()) {
         write_json(options.json, json);
     }
+    if (!options.html.empty()) {
+        grids_page(json).write(options.html);
+    }
     if (!options.csv.empty()) {
         write_csv(options.csv, kColumns, csv_rows(json));
     }
@@ -117,6 +122,7 @@ void add_grids_command(CLI::App& app) {
                       "score all frames of the protocol, not only the last: needs references of all views of each");
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write the table to this file");
+    command->add_option("--html", options->html, "write a report with charts to this file");
     command->footer(
         "\nEvery view of every grid is scored, so references of all of them are made first (36 for the default\n"
         "grids, slow on a processor). That can be interrupted; the same command goes on where it was.");

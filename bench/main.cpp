@@ -21,6 +21,7 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_grids_command(app);
     fieldcast::bench::add_sources_command(app);
     fieldcast::bench::add_reference_command(app);
+    fieldcast::bench::add_report_command(app);
     fieldcast::bench::add_compare_command(app);
     app.footer(
         "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/benchmarks.md says\n"

@@ -3,6 +3,8 @@
 
 #include "bench/commit.h" // made by bench/commit.cmake
 
+#include <array>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -41,13 +43,24 @@ std::string command_line() {
     return text;
 }
 
+/// "2025-11-21T08:15Z".
+std::string utc_time() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    std::array<char, 32> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%MZ", &parts);
+    return text.data();
+}
+
 } // namespace
 
 nlohmann::ordered_json provenance(const gpu::Device& device) {
     return {{"processor", processor()},
             {"device", device.info().name + ", " + device.info().driver},
             {"commit", kCommit},
-            {"command", command_line()}};
+            {"command", command_line()},
+            {"finished", utc_time()}};
 }
 
 } // namespace fieldcast::bench

@@ -8,7 +8,7 @@
 namespace fieldcast::bench {
 
 /// What every result names, so that numbers can be told apart later: processor, device with driver, commit ("-dirty" if
-/// the tree had changes when it was built), command line.
+/// the tree had changes when it was built), command line, UTC time.
 nlohmann::ordered_json provenance(const gpu::Device& device);
 
 } // namespace fieldcast::bench

@@ -17,6 +17,7 @@ struct QualityOptions {
     ProtocolOptions protocol;
     std::string json;
     std::string csv;
+    std::string html;
     std::string out;
     std::vector<std::string> presets{"reprojected", "svgf", "ours"};
     double exposure = 0.0;
@@ -55,6 +56,9 @@ void run_quality(const QualityOptions& options) {
     }
     if (!options.json.empty()) {
         write_json(options.json, json);
+    }
+    if (!options.html.empty()) {
+        quality_page(json, run.shown()).write(options.html);
     }
     if (!options.csv.empty()) {
         write_csv(options.csv, quality_columns(), quality_csv_rows(json));
@@ -96,6 +100,7 @@ void add_quality_command(CLI::App& app) {
     add_measures(*command, *options);
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write the table to this file");
+    command->add_option("--html", options->html, "write a report with charts and pictures to this file");
     command->add_option(
         "--out", options->out,
         "write the scored views to this folder, PNG and EXR, and quality.json, for `./fieldcast bench flip`");

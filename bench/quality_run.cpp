@@ -12,7 +12,6 @@ namespace fieldcast::bench {
 
 namespace {
 
-constexpr const char* kReference = "reference";
 constexpr std::uint32_t kSettle = 30;        // frames at rest before flicker is measured
 constexpr std::uint32_t kRest = kSettle + 8; // all frames at rest
 
@@ -25,6 +24,7 @@ QualityRun::QualityRun(const gpu::Device& device, const QualitySettings& setting
         throw UserError("--light-field needs all views: leave out --scored-views");
     }
     exposure_ = choose_exposure(device, scene_, settings.exposure, settings.scene);
+    shown_.id = {last_frame(), settings_.protocol.views.back()};
     add_rows(device);
 }
 
@@ -112,7 +112,7 @@ void QualityRun::score_frame(std::uint32_t frame) {
         }
     }
     for (const LatticePosition position : settings_.protocol.views) {
-        keep(kReference, {frame, position}, truths.at(position).reference);
+        keep(kReferenceName, {frame, position}, truths.at(position).reference);
     }
 }
 
@@ -134,8 +134,8 @@ void QualityRun::keep(const std::string& name, const PictureId& id, const image:
     if (!settings_.out.empty()) {
         write_picture(settings_.out, picture_name(name, id), linear, exposure_);
     }
-    if (id == shown_id()) {
-        shown_.push_back({name, linear});
+    if (id == shown_.id) {
+        shown_.pictures.push_back({name, linear});
     }
 }
 
@@ -158,7 +158,7 @@ nlohmann::ordered_json QualityRun::result() const {
                                         {"ssim", picture.ssim},
                                         {"relative_mse", picture.relative_mse},
                                         {"file", picture_name(row.name(), picture.id)},
-                                        {"reference", picture_name(kReference, picture.id)}});
+                                        {"reference", picture_name(kReferenceName, picture.id)}});
         }
     }
     return json;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/benchmark_scene.h"
+#include "bench/quality_page.h"
 #include "bench/quality_row.h"
 
 namespace fieldcast::bench {
@@ -19,12 +20,6 @@ struct QualitySettings {
     std::filesystem::path out;    ///< scored views go there; empty: nowhere
 };
 
-/// A linear picture of one row, or of the reference.
-struct NamedPicture {
-    std::string name;
-    image::RgbF32 linear;
-};
-
 /// Renders all rows of a quality table, interleaved, and scores them.
 class QualityRun {
 public:
@@ -38,8 +33,7 @@ public:
     nlohmann::ordered_json result() const;
 
     /// The last view of the protocol in its last frame, as every row made it, and the reference.
-    const std::vector<NamedPicture>& shown() const { return shown_; }
-    PictureId shown_id() const { return {settings_.protocol.frames.back(), settings_.protocol.views.back()}; }
+    const ShownPictures& shown() const { return shown_; }
     std::uint64_t invalid_samples() const;
 
 private:
@@ -58,7 +52,7 @@ private:
     GroundTruth truth_;
     float exposure_ = 1.0F;
     std::vector<QualityRow> rows_;
-    std::vector<NamedPicture> shown_;
+    ShownPictures shown_;
 };
 
 } // namespace fieldcast::bench

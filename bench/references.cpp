@@ -108,7 +108,8 @@ void make_references(LightFieldScene& scene, References& references, const std::
                      std::uint32_t samples) {
     double missing = 0.0;
     for (const PictureId& picture : wanted) {
-        const std::uint32_t lacking = samples - std::min(references.samples_of(picture.frame, picture.position), samples);
+        const std::uint32_t lacking =
+            samples - std::min(references.samples_of(picture.frame, picture.position), samples);
         missing += (lacking + kBatch - 1) / kBatch * kBatch;
     }
     if (missing == 0.0) {
