@@ -5,6 +5,7 @@
 #include "bench/protocol_options.h"
 #include "bench/provenance.h"
 #include "bench/quality_table.h"
+#include "bench/sources_page.h"
 #include "bench/sources_run.h"
 #include "core/lightfield/presets.h"
 
@@ -21,6 +22,7 @@ struct SourcesOptions {
     std::string preset = "ours";
     std::string json;
     std::string csv;
+    std::string html;
     std::string out;
     double exposure = 0.0;
     bool scores_all_views = false;
@@ -78,6 +80,9 @@ void run_sources(const SourcesOptions& options) {
     if (!options.csv.empty()) {
         write_csv(options.csv, kColumns, csv_rows(json));
     }
+    if (!options.html.empty()) {
+        sources_page(json).write(options.html);
+    }
 }
 
 } // namespace
@@ -97,6 +102,7 @@ void add_sources_command(CLI::App& app) {
                       "score all views of the last frame, for heat maps of RMSE and SSIM: needs their references");
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write the table to this file");
+    command->add_option("--html", options->html, "write a report with charts to this file");
     command->add_option("--out", options->out,
                         "write heat maps to this folder: MEASURE_N.png for configuration N, dark 0, bright the largest");
     command->footer("\nExample:\n  ./fieldcast bench sources --scene sponza --sources middle corners --out heat_maps");

@@ -183,7 +183,6 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         config.port_file = text.port_file;
     }
     config.settings.next_event_estimation = !text.lacks_next_event_estimation;
-    config.settings.light_sampling.each_kind = !text.has_one_light_kind;
     constexpr std::array kDenoisers{Word{.word = "svgf+", .value = Denoiser::kSvgfPlus},
                                     Word{.word = "svgf", .value = Denoiser::kSvgf},
                                     Word{.word = "none", .value = Denoiser::kNone}};

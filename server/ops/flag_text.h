@@ -19,7 +19,6 @@ struct FlagText {
     std::string largest_grid = "6x6";
     std::string sources = "middle";
     bool lacks_next_event_estimation = false;
-    bool has_one_light_kind = false; ///< at the first vertex
     std::string denoiser = "svgf+";
     std::string holes = "all";
     std::string exposure = "auto";

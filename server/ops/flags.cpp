@@ -75,8 +75,8 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
                    "Candidates of which the best is taken as light sample")
         ->group("Rendering")
         ->capture_default_str();
-    app.add_flag("--one-light-kind", text.has_one_light_kind,
-                 "One shadow ray at the first vertex for all kinds of light instead of one for each")
+    app.add_flag("--each-light-kind", settings.light_sampling.each_kind,
+                 "A shadow ray for each kind of light at the first vertex instead of one for all")
         ->group("Rendering");
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
     app.add_flag("--accumulate", settings.accumulate,
