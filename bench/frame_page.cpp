@@ -110,7 +110,7 @@ report::Page frame_page(const Json& result) {
     page.add_section(
         "Holes",
         report::definitions({{"not reusable", percent_text(result["hole_share"]) + " of the synthesised pixels"},
-                             {"path traced", percent_text(result["traced_share"]) + " of them"},
+                             {"path traced", percent_text(result["traced_share"]) + " of the synthesised pixels"},
                              {"one source path", report::fixed(result["ns_per_source_path"].get<double>(), 0) + " ns"},
                              {"one hole path", report::fixed(result["ns_per_hole_path"].get<double>(), 0) + " ns"}}));
     page.add_section("How it was measured",

@@ -11,6 +11,7 @@ namespace fieldcast::bench::report {
 namespace {
 
 constexpr double kLabelledShare = 0.04; // of a stacked bar; less has no room for a number
+constexpr double kRoomyShare = 0.12;    // less has no room on a phone
 
 std::string percent(double share) {
     return fixed(100.0 * share, 2) + "%";
@@ -54,7 +55,8 @@ std::string stack_rects(const Stack& stack, double total) {
             joined({"<rect class=\"s", std::to_string(part.series), "\" x=\"", percent(begin), "\" y=\"0\" width=\"",
                     percent(share), "\" height=\"34\">", tooltip(part.label + ": " + percent(share)), "</rect>"});
         if (share >= kLabelledShare) {
-            content += joined({"<text class=\"inside\" x=\"", percent(begin + share / 2.0),
+            const char* style = share < kRoomyShare ? "inside narrow" : "inside";
+            content += joined({"<text class=\"", style, "\" x=\"", percent(begin + share / 2.0),
                                "\" y=\"22\" text-anchor=\"middle\">", fixed(100.0 * share, 0), " %</text>"});
         }
         begin += share;

@@ -34,8 +34,10 @@ figcaption { font-weight: 600; margin-bottom: .6rem; }
 .note { font-weight: 400; color: var(--soft); font-size: .88em; margin-left: .6em; }
 .beside { display: grid; gap: 1rem; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr));
   margin-bottom: 1rem; }
-.row { display: grid; grid-template-columns: 6.2rem 1fr 4.6rem; gap: .6rem; align-items: center; font-size: .92rem; }
-.row .label { overflow-wrap: anywhere; }
+.bars { display: grid; grid-template-columns: fit-content(10rem) minmax(3rem, 1fr) max-content; gap: .12rem .8rem;
+  align-items: center; align-content: start; font-size: .92rem; }
+.bars figcaption { grid-column: 1 / -1; font-size: 1rem; }
+.row { display: contents; } .label { overflow-wrap: anywhere; }
 .value { text-align: right; font-variant-numeric: tabular-nums; }
 .strong { font-weight: 700; }
 svg { display: block; overflow: visible; }
@@ -49,6 +51,7 @@ svg text.inside { fill: #fff; font-weight: 600; }
 .s4 { fill: var(--s4); background: var(--s4); stroke: var(--s4); } .s5 { fill: var(--s5); background: var(--s5); stroke: var(--s5); }
 .s6 { fill: var(--s6); background: var(--s6); stroke: var(--s6); } .s7 { fill: var(--s7); background: var(--s7); stroke: var(--s7); }
 .stack { border-radius: .35rem; overflow: hidden; margin-bottom: 1rem; } .stack rect { stroke: none; }
+.stack-label .value { white-space: nowrap; }
 .stack-label { display: flex; justify-content: space-between; gap: 1rem; font-size: .92rem; margin-bottom: .2rem; }
 .legend { list-style: none; display: flex; flex-wrap: wrap; gap: .25rem 1.1rem; margin: .7rem 0 0; padding: 0;
   font-size: .88rem; color: var(--soft); }
@@ -84,7 +87,7 @@ dt { font-weight: 600; } dd { margin: 0; color: var(--soft); overflow-wrap: anyw
 @media (max-width: 34rem) {
   main { padding-top: 1.5rem; } h1 { font-size: 1.4rem; }
   dl { grid-template-columns: 1fr; gap: .1rem; } dd { margin-bottom: .5rem; }
-  .row { grid-template-columns: 5.8rem 1fr 4.2rem; } .heat { font-size: .68rem; }
+  .heat { font-size: .68rem; } svg text.narrow { display: none; }
 }
 @media print { .viewer { display: none; } section, figure { break-inside: avoid; } }
 )css";
