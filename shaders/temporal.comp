@@ -21,6 +21,7 @@ layout(set = 1, binding = kTemporalSpecular) uniform samplerBuffer specular_;
 layout(push_constant, scalar) uniform Push { TemporalParams params; };
 
 const float kMaxHistory = 64.0;
+const float kMotionFootprints = 0.1; // per frame, of a surface's point
 
 struct History {
     vec3 diffuse;
@@ -142,7 +143,8 @@ void main() {
     CameraRecord now = params.cameras.at[source];
     CameraRecord before = params.cameras.at[params.source_count + source];
     Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5);
-    past.normal = unpack_normal(texelFetch(geometry_, int(index)).y);
+    uvec4 geometry = texelFetch(geometry_, int(index));
+    past.normal = unpack_normal(geometry.y);
     vec3 p = camera_project(before, past.position);
     History history = gather_history(before, at.page, p.xy, past);
     if (!(p.z > 0.0) || history.weight < 0.01) {
@@ -153,7 +155,10 @@ void main() {
     keep_taps(index, p.xy, history.accepted);
     float scale = 1.0 / history.weight;
     float frames = min(history.frames * scale + 1.0, params.alpha > 0.0 ? kMaxHistory : 1e6);
-    float alpha = max(params.alpha, 1.0 / frames);
+    // Light on a surface that moves is not what it was elsewhere: the short average for it.
+    vec3 here = now.origin + camera_direction(now, vec2(at.x, at.y) + 0.5) * uintBitsToFloat(geometry.x);
+    bool moves = length(past.position - here) > kMotionFootprints * uintBitsToFloat(geometry.x) / now.focal_px;
+    float alpha = max(moves ? params.moments_alpha : params.alpha, 1.0 / frames);
     store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
           mix(history.moments * scale, moments, max(params.moments_alpha, 1.0 / frames)), frames);
 }
