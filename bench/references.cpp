@@ -16,6 +16,12 @@ constexpr std::uint32_t kBatch = 16; // samples between looks at the clock
 constexpr std::uint32_t kSeed = 0x5EED;
 constexpr std::chrono::seconds kSaveInterval{30};
 
+/// Other noise in each picture: equal noise would neither average out in refocused images nor show as change over time.
+std::uint32_t seed_of(std::uint32_t frame, LatticePosition position) {
+    const ViewIndex index = view_index(position);
+    return kSeed + 4096U * frame + static_cast<std::uint32_t>(64 * index.row + index.col);
+}
+
 std::string hex(const scene::SceneHash& hash) {
     constexpr const char* kDigits = "0123456789abcdef";
     std::string text;
@@ -86,7 +92,7 @@ std::optional<image::RgbF32> References::get(std::uint32_t frame, LatticePositio
     }
     auto saved = std::chrono::steady_clock::now();
     while (renderer_.samples_per_pixel() < samples) {
-        renderer_.accumulate(unbiased(), kSeed);
+        renderer_.accumulate(unbiased(), seed_of(frame, position));
         const auto now = std::chrono::steady_clock::now();
         const bool goes_on = progress(renderer_.samples_per_pixel());
         if (!goes_on || now - saved > kSaveInterval || renderer_.samples_per_pixel() >= samples) {

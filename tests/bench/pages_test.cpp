@@ -6,6 +6,7 @@
 #include "bench/quality_table.h"
 #include "tests/bench/html_check.h"
 
+#include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -102,6 +103,17 @@ TEST(QualityTable, HasALineForEachRow) {
     for (const std::string& column : quality_columns()) {
         EXPECT_TRUE(rows[2].contains(column)) << column;
     }
+}
+
+TEST(QualityTable, HasTheColumnsOfTheCommittedResults) {
+    std::string expected;
+    for (const std::string& column : quality_columns()) {
+        expected += (expected.empty() ? "" : ",") + column;
+    }
+    std::ifstream stream("bench/results/quality.csv");
+    std::string line;
+    std::getline(stream, line);
+    EXPECT_EQ(line, expected);
 }
 
 TEST(FramePage, GroupsStagesAsThePaperDoes) {
