@@ -29,7 +29,7 @@ struct QualityOptions {
     std::string json;
     std::string csv;
     std::string out;
-    std::vector<std::string> presets{"reprojected", "svgf", "ours"};
+    std::vector<std::string> presets{"reprojected", "svgf", "bmfr", "ours"};
     std::uint32_t reference_samples = 0; ///< 0: the protocol's
     double exposure = 0.0;
     double indirect_clamp = -1.0; ///< < 0: the presets'

@@ -60,7 +60,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
-    app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
+    app.add_option("--denoiser", text.denoiser, "svgf+, svgf, bmfr or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
                    "previous,isolated,cascade,source,denoise")

@@ -1,0 +1,368 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Least squares fit of a block's accumulated illumination to features of its surfaces; one group per block.
+// Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
+// Transactions on Graphics 38(5), 2019, sections 3.2 and 3.3.
+// Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone through
+// once; the expectation of the noise that is added to the features there is a ridge here. Positions count from the middle
+// of the block. Pixels without a surface and outside the image do not take part. Two signals. Sums have a fixed order,
+// whatever the size of a subgroup.
+#extension GL_GOOGLE_include_directive : require
+#include "shared/bmfr.h"
+
+layout(local_size_x = kFitThreads) in;
+layout(push_constant, scalar) uniform Push { BmfrParams params; };
+
+#include "lib/block_fit.glsl"
+
+const uint kPixelsPerThread = kFitSide * kFitSide / kFitThreads;
+const uint kGram = kFitFeatures * (kFitFeatures + 1u) / 2u; // lower triangle, row by row
+const uint kColumns = 6u;                                   // red, green, blue; diffuse, specular
+const float kNoise = 1e-2;        // half width of the paper's uniform noise in the features
+const float kThinnest = 1.0 / 64; // an extent of this share of the largest one counts as no less
+const float kFullTrust = 256.0;   // pixels: a quarter of a block
+const float kMatureFrames = 4.0;  // whose variance says something
+const float kVisibleError = 1e-2; // of the block's light: less is no reason to distrust a fit
+
+shared float partial_[kFitFeatures * kColumns * kFitThreads];
+shared float gram_[kGram];
+shared float right_[kFitFeatures * kColumns]; // right hand sides, then weights; features, then columns
+
+struct BlockPixel {
+    bool has_surface;
+    int texel;
+    vec3 normal;
+    vec3 offset; // from the camera
+};
+
+BlockPixel load_pixel(CameraRecord camera, uint number) {
+    uint index = gl_LocalInvocationID.x + kFitThreads * number;
+    ivec2 at = params.first + ivec2(gl_WorkGroupID.xy * kFitSide + uvec2(index % kFitSide, index / kFitSide));
+    BlockPixel pixel = BlockPixel(false, 0, vec3(0.0), vec3(0.0));
+    if (is_inside(at)) {
+        pixel.texel = int((gl_WorkGroupID.z * params.height + uint(at.y)) * params.width + uint(at.x));
+        uvec4 geometry = texelFetch(geometry_, pixel.texel);
+        pixel.has_surface = geometry.z != 0xFFFFFFFFu;
+        pixel.normal = unpack_normal(geometry.y);
+        pixel.offset = camera_offset(camera, at, geometry);
+    }
+    return pixel;
+}
+
+void put(uint slot, float value) {
+    partial_[slot * kFitThreads + gl_LocalInvocationID.x] = value;
+}
+
+void put(uint slot, vec3 value) {
+    put(slot, value.x);
+    put(slot + 1u, value.y);
+    put(slot + 2u, value.z);
+}
+
+// Over all invocations, in the same order everywhere.
+float sum_of(uint slot) {
+    float sum = 0.0;
+    for (uint i = 0u; i < kFitThreads; ++i) {
+        sum += partial_[slot * kFitThreads + i];
+    }
+    return sum;
+}
+
+vec3 sum3_of(uint slot) {
+    return vec3(sum_of(slot), sum_of(slot + 1u), sum_of(slot + 2u));
+}
+
+// What positions and normals are counted from, and how many pixels show a surface.
+struct Frame {
+    vec3 normal;
+    vec3 centre;
+    vec3 scale;
+    float count;
+};
+
+float least_of(uint slot) {
+    float least = partial_[slot * kFitThreads];
+    for (uint i = 1u; i < kFitThreads; ++i) {
+        least = min(least, partial_[slot * kFitThreads + i]);
+    }
+    return least;
+}
+
+Frame measure_block(CameraRecord camera) {
+    vec3 low = vec3(1e30);
+    vec3 negative_high = vec3(1e30);
+    vec3 normals = vec3(0.0);
+    float count = 0.0;
+    for (uint i = 0u; i < kPixelsPerThread; ++i) {
+        BlockPixel pixel = load_pixel(camera, i);
+        if (pixel.has_surface) {
+            low = min(low, pixel.offset);
+            negative_high = min(negative_high, -pixel.offset);
+            normals += pixel.normal;
+            count += 1.0;
+        }
+    }
+    put(0u, low);
+    put(3u, negative_high);
+    put(6u, normals);
+    put(9u, count);
+    barrier();
+    Frame frame;
+    low = vec3(least_of(0u), least_of(1u), least_of(2u));
+    vec3 high = -vec3(least_of(3u), least_of(4u), least_of(5u));
+    frame.count = sum_of(9u);
+    frame.normal = sum3_of(6u) / max(frame.count, 1.0);
+    frame.centre = 0.5 * (low + high);
+    vec3 extent = max(high - low, vec3(0.0));
+    float largest = max(max(extent.x, extent.y), extent.z);
+    frame.scale = 2.0 / max(extent, vec3(max(kThinnest * largest, 1e-20)));
+    barrier();
+    return frame;
+}
+
+// One invocation's share of the normal equations.
+struct Products {
+    float count;
+    vec3 normal;
+    vec3 position;
+    vec3 square;
+    mat3 normal_normal;
+    mat3 position_normal; // rows: the first factor
+    mat3 position_position;
+    mat3 square_normal;
+    mat3 square_position;
+    mat3 square_square;
+};
+
+struct LightProducts {
+    vec3 light;
+    mat3 normal; // columns: the features
+    mat3 position;
+    mat3 square;
+};
+
+void add(inout Products p, Features f) {
+    p.count += 1.0;
+    p.normal += f.normal;
+    p.position += f.position;
+    p.square += f.square;
+    p.normal_normal += outerProduct(f.normal, f.normal);
+    p.position_normal += outerProduct(f.position, f.normal);
+    p.position_position += outerProduct(f.position, f.position);
+    p.square_normal += outerProduct(f.square, f.normal);
+    p.square_position += outerProduct(f.square, f.position);
+    p.square_square += outerProduct(f.square, f.square);
+}
+
+void add(inout LightProducts p, Features f, vec3 light) {
+    p.light += light;
+    p.normal += outerProduct(light, f.normal);
+    p.position += outerProduct(light, f.position);
+    p.square += outerProduct(light, f.square);
+}
+
+uint gram_index(uint row, uint column) {
+    return row * (row + 1u) / 2u + column;
+}
+
+// Products of three features with three others at `row` and `column`; on the diagonal only the lower triangle.
+void put_gram(uint row, uint column, mat3 products) {
+    for (uint r = 0u; r < 3u; ++r) {
+        for (uint c = 0u; c < 3u; ++c) {
+            if (column + c <= row + r) {
+                put(gram_index(row + r, column + c), products[c][r]);
+            }
+        }
+    }
+}
+
+void put_products(Products p) {
+    put(0u, p.count);
+    for (uint i = 0u; i < 3u; ++i) {
+        put(gram_index(1u + i, 0u), p.normal[i]);
+        put(gram_index(4u + i, 0u), p.position[i]);
+        put(gram_index(7u + i, 0u), p.square[i]);
+    }
+    put_gram(1u, 1u, p.normal_normal);
+    put_gram(4u, 1u, p.position_normal);
+    put_gram(4u, 4u, p.position_position);
+    put_gram(7u, 1u, p.square_normal);
+    put_gram(7u, 4u, p.square_position);
+    put_gram(7u, 7u, p.square_square);
+}
+
+void put_light(uint column, LightProducts p) {
+    put(column, p.light);
+    for (uint i = 0u; i < 3u; ++i) {
+        put((1u + i) * kColumns + column, p.normal[i]);
+        put((4u + i) * kColumns + column, p.position[i]);
+        put((7u + i) * kColumns + column, p.square[i]);
+    }
+}
+
+void sum_products(CameraRecord camera, Frame frame) {
+    const mat3 zero = mat3(0.0);
+    const vec3 none = vec3(0.0);
+    Products gram = Products(0.0, none, none, none, zero, zero, zero, zero, zero, zero);
+    LightProducts diffuse = LightProducts(none, zero, zero, zero);
+    LightProducts specular = LightProducts(none, zero, zero, zero);
+    for (uint i = 0u; i < kPixelsPerThread; ++i) {
+        BlockPixel pixel = load_pixel(camera, i);
+        if (pixel.has_surface) {
+            Features f = make_features(frame.normal, frame.centre, frame.scale, pixel.normal, pixel.offset);
+            add(gram, f);
+            add(diffuse, f, texelFetch(diffuse_, pixel.texel).rgb);
+            add(specular, f, texelFetch(specular_, pixel.texel).rgb);
+        }
+    }
+    uint thread = gl_LocalInvocationID.x;
+    put_products(gram);
+    barrier();
+    if (thread < kGram) {
+        gram_[thread] = sum_of(thread);
+    }
+    barrier();
+    put_light(0u, diffuse);
+    put_light(3u, specular);
+    barrier();
+    if (thread < kFitFeatures * kColumns) {
+        right_[thread] = sum_of(thread);
+    }
+    barrier();
+}
+
+// Lower Cholesky factor of the products and the ridge, in place. The ridge is what uniform noise adds to the squares in
+// expectation: its variance, of each pixel; the constant has none.
+void factorise(float count) {
+    float ridge = count * kNoise * kNoise / 3.0;
+    for (uint c = 0u; c < kFitFeatures; ++c) {
+        float pivot = gram_[gram_index(c, c)] + (c > 0u ? ridge : 0.0);
+        for (uint k = 0u; k < c; ++k) {
+            pivot -= gram_[gram_index(c, k)] * gram_[gram_index(c, k)];
+        }
+        float diagonal = sqrt(max(pivot, 0.5 * ridge)); // exactly, it is the ridge at least
+        gram_[gram_index(c, c)] = diagonal;
+        for (uint r = c + 1u; r < kFitFeatures; ++r) {
+            float value = gram_[gram_index(r, c)];
+            for (uint k = 0u; k < c; ++k) {
+                value -= gram_[gram_index(r, k)] * gram_[gram_index(c, k)];
+            }
+            gram_[gram_index(r, c)] = value / diagonal;
+        }
+    }
+}
+
+// Forward and back substitution of one right hand side.
+void substitute(uint column) {
+    for (uint r = 0u; r < kFitFeatures; ++r) {
+        float value = right_[r * kColumns + column];
+        for (uint k = 0u; k < r; ++k) {
+            value -= gram_[gram_index(r, k)] * right_[k * kColumns + column];
+        }
+        right_[r * kColumns + column] = value / gram_[gram_index(r, r)];
+    }
+    for (uint r = kFitFeatures; r-- > 0u;) {
+        float value = right_[r * kColumns + column];
+        for (uint k = r + 1u; k < kFitFeatures; ++k) {
+            value -= gram_[gram_index(k, r)] * right_[k * kColumns + column];
+        }
+        right_[r * kColumns + column] = value / gram_[gram_index(r, r)];
+    }
+}
+
+void solve(float count) {
+    if (gl_LocalInvocationID.x == 0u) {
+        factorise(count);
+    }
+    barrier();
+    if (gl_LocalInvocationID.x < kColumns) {
+        substitute(gl_LocalInvocationID.x);
+    }
+    barrier();
+}
+
+vec3 weight_of(uint feature, uint column) {
+    uint at = feature * kColumns + column;
+    return vec3(right_[at], right_[at + 1u], right_[at + 2u]);
+}
+
+// Luminance of a fit.
+struct LuminanceFit {
+    float constant;
+    vec3 normal;
+    vec3 position;
+    vec3 square;
+};
+
+vec3 luminances(uint feature, uint column) {
+    return vec3(luminance(weight_of(feature, column)), luminance(weight_of(feature + 1u, column)),
+                luminance(weight_of(feature + 2u, column)));
+}
+
+LuminanceFit luminance_fit(uint column) {
+    return LuminanceFit(luminance(weight_of(0u, column)), luminances(1u, column), luminances(4u, column),
+                        luminances(7u, column));
+}
+
+float evaluate(LuminanceFit fit, Features f) {
+    return fit.constant + dot(fit.normal, f.normal) + dot(fit.position, f.position) + dot(fit.square, f.square);
+}
+
+// How far the fits may be trusted. What they leave over should be the noise of the accumulated light, which the moments
+// tell of; four times its variance or more is light that features cannot express: edges of shadows, highlights, mirrors.
+vec2 measure_trust(CameraRecord camera, Frame frame) {
+    LuminanceFit diffuse = luminance_fit(0u);
+    LuminanceFit specular = luminance_fit(3u);
+    vec2 squares = vec2(0.0);  // of what is left over; diffuse, specular
+    vec2 noise = vec2(0.0);
+    float count = 0.0;
+    for (uint i = 0u; i < kPixelsPerThread; ++i) {
+        BlockPixel pixel = load_pixel(camera, i);
+        float frames = texelFetch(length_, pixel.texel).x;
+        if (pixel.has_surface && frames >= kMatureFrames) {
+            Features f = make_features(frame.normal, frame.centre, frame.scale, pixel.normal, pixel.offset);
+            vec2 left = vec2(evaluate(diffuse, f) - luminance(texelFetch(diffuse_, pixel.texel).rgb),
+                             evaluate(specular, f) - luminance(texelFetch(specular_, pixel.texel).rgb));
+            squares += left * left;
+            vec4 moments = texelFetch(moments_, pixel.texel);
+            float of_mean = max(1.0 / frames, params.noisy_alpha / (2.0 - params.noisy_alpha));
+            noise += of_mean * max(vec2(0.0), moments.yw - moments.xz * moments.xz);
+            count += 1.0;
+        }
+    }
+    put(0u, vec3(squares, count));
+    put(3u, vec3(noise, 0.0));
+    barrier();
+    count = sum_of(2u);
+    vec2 error = kVisibleError * vec2(diffuse.constant, specular.constant);
+    vec2 expected = vec2(sum_of(3u), sum_of(4u)) + max(count, 1.0) * error * error;
+    vec2 ratio = vec2(sum_of(0u), sum_of(1u)) / max(expected, vec2(1e-30));
+    vec2 trust = 2.0 * count < frame.count ? vec2(1.0) : clamp(2.0 - 0.5 * ratio, 0.0, 1.0);
+    return trust * clamp(2.0 * frame.count / kFullTrust - 1.0, 0.0, 1.0);
+}
+
+void main() {
+    CameraRecord camera = params.camera.at[0];
+    uint block = (gl_WorkGroupID.z * params.blocks.y + gl_WorkGroupID.y) * params.blocks.x + gl_WorkGroupID.x;
+    uint thread = gl_LocalInvocationID.x;
+    Frame frame = measure_block(camera);
+    if (2.0 * frame.count <= kFullTrust) { // the same for all invocations
+        if (thread == 0u) {
+            params.fits.at[block].trust = vec2(0.0);
+        }
+        return;
+    }
+    sum_products(camera, frame);
+    solve(frame.count);
+    vec2 trust = measure_trust(camera, frame);
+    if (thread == 0u) {
+        params.fits.at[block].normal = frame.normal;
+        params.fits.at[block].centre = frame.centre;
+        params.fits.at[block].scale = frame.scale;
+        params.fits.at[block].trust = trust;
+    }
+    if (thread < kFitFeatures) {
+        params.fits.at[block].diffuse[thread] = weight_of(thread, 0u);
+        params.fits.at[block].specular[thread] = weight_of(thread, 3u);
+    }
+}
