@@ -30,9 +30,10 @@ uint block_of(ivec2 at, uint page) {
     return (page * params.blocks.y + block.y) * params.blocks.x + block.x;
 }
 
-Light evaluate(uint block, vec3 normal, vec3 offset) {
-    Features f = make_features(params.fits.at[block].normal, params.fits.at[block].centre, params.fits.at[block].scale,
-                               normal, offset);
+Light evaluate(uint block, vec3 offset, vec3 normal, vec2 material) {
+    FitFrame frame = FitFrame(params.fits.at[block].normal, params.fits.at[block].centre, params.fits.at[block].scale,
+                              params.fits.at[block].material);
+    Features f = make_features(frame, offset, normal, material);
     Light light = Light(params.fits.at[block].diffuse[0], params.fits.at[block].specular[0]);
     for (uint i = 0u; i < 3u; ++i) {
         light.diffuse += params.fits.at[block].diffuse[1u + i] * f.normal[i] +
@@ -41,6 +42,10 @@ Light evaluate(uint block, vec3 normal, vec3 offset) {
         light.specular += params.fits.at[block].specular[1u + i] * f.normal[i] +
                           params.fits.at[block].specular[4u + i] * f.position[i] +
                           params.fits.at[block].specular[7u + i] * f.square[i];
+    }
+    for (uint i = 0u; i < 2u; ++i) {
+        light.diffuse += params.fits.at[block].diffuse[10u + i] * f.material[i];
+        light.specular += params.fits.at[block].specular[10u + i] * f.material[i];
     }
     return Light(max(light.diffuse, vec3(0.0)), max(light.specular, vec3(0.0)));
 }
@@ -129,7 +134,7 @@ Light filtered(Centre c, uint page, uvec4 geometry, float frames, Light own) {
         light = stand_in(c, frames, own);
     }
     if (any(greaterThan(trust, vec2(0.0)))) {
-        Light fit = evaluate(block, c.normal, camera_offset(params.camera.at[0], c.at, geometry));
+        Light fit = evaluate(block, camera_offset(params.camera.at[0], c.at, geometry), c.normal, unpack_material(geometry.w));
         light = Light(mix(light.diffuse, fit.diffuse, trust.x), mix(light.specular, fit.specular, trust.y));
     }
     return light;

@@ -9,6 +9,15 @@ struct Features {
     vec3 normal;
     vec3 position;
     vec3 square;
+    vec2 material;
+};
+
+// What they are counted from.
+struct FitFrame {
+    vec3 normal;
+    vec3 centre;
+    vec3 scale;
+    vec2 material;
 };
 
 // From the camera to the surface that a pixel shows, metres along the world's axes.
@@ -16,9 +25,14 @@ vec3 camera_offset(CameraRecord camera, ivec2 at, uvec4 geometry) {
     return camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x);
 }
 
-Features make_features(vec3 mean_normal, vec3 centre, vec3 scale, vec3 normal, vec3 offset) {
-    vec3 q = (offset - centre) * scale;
-    return Features(normal - mean_normal, q, q * q);
+// Roughness, metallic.
+vec2 unpack_material(uint bits) {
+    return vec2(bits & 0xFFu, (bits >> 8) & 0xFFu) / 255.0;
+}
+
+Features make_features(FitFrame frame, vec3 offset, vec3 normal, vec2 material) {
+    vec3 q = (offset - frame.centre) * frame.scale;
+    return Features(normal - frame.normal, q, q * q, material - frame.material);
 }
 
 #endif

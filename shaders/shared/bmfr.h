@@ -8,14 +8,15 @@ SHARED_BEGIN
 
 const uint kFitSide = 32;     // pixels of a block in each direction
 const uint kFitThreads = 64;  // invocations per block
-const uint kFitFeatures = 10; // 1, n, q, q²: see BlockFit
+const uint kFitFeatures = 12; // 1, n, q, q², m: see BlockFit
 
-// Illumination of one block: Σ weight · feature. With n the shading normal less its mean, and
-// q = (position − camera's origin − centre) · scale, component by component.
+// Illumination of one block: Σ weight · feature. With n the shading normal less its mean,
+// q = (position − camera's origin − centre) · scale, component by component, and m roughness and metallic less their means.
 struct BlockFit {
-    vec3 normal;  // mean over the block
-    vec3 centre;  // metres
-    vec3 scale;   // brings the block's positions to −1 … 1
+    vec3 normal;   // mean over the block
+    vec3 centre;   // metres
+    vec3 scale;    // brings the block's positions to −1 … 1
+    vec2 material; // mean
     vec2 trust;   // in the fits of diffuse and specular: 1 use it, 0 do not
     vec3 diffuse[kFitFeatures];
     vec3 specular[kFitFeatures];
