@@ -17,8 +17,8 @@ layout(set = 0, binding = kBmfrPreviousDiffuse) uniform samplerBuffer previous_d
 layout(set = 0, binding = kBmfrPreviousSpecular) uniform samplerBuffer previous_specular_;
 
 const float kLeastWeight = 0.02;   // as in svgf_variance.comp
-const float kMatureFrames = 4.0;   // as in bmfr_fit.comp
-const float kDeviations = 4.0;     // of luminance, that neighbours may be away
+const int kRadius = 2;
+const float kDeviations = 2.0;
 
 struct Light {
     vec3 diffuse;
@@ -30,10 +30,10 @@ uint block_of(ivec2 at, uint page) {
     return (page * params.blocks.y + block.y) * params.blocks.x + block.x;
 }
 
-Light evaluate(uint block, vec3 offset, vec3 normal, vec2 material) {
-    FitFrame frame = FitFrame(params.fits.at[block].normal, params.fits.at[block].centre, params.fits.at[block].scale,
-                              params.fits.at[block].material);
-    Features f = make_features(frame, offset, normal, material);
+Light evaluate(uint block, vec3 offset, vec3 normal) {
+    FitFrame frame =
+        FitFrame(params.fits.at[block].normal, params.fits.at[block].centre, params.fits.at[block].scale);
+    Features f = make_features(frame, offset, normal);
     Light light = Light(params.fits.at[block].diffuse[0], params.fits.at[block].specular[0]);
     for (uint i = 0u; i < 3u; ++i) {
         light.diffuse += params.fits.at[block].diffuse[1u + i] * f.normal[i] +
@@ -43,54 +43,52 @@ Light evaluate(uint block, vec3 offset, vec3 normal, vec2 material) {
                           params.fits.at[block].specular[4u + i] * f.position[i] +
                           params.fits.at[block].specular[7u + i] * f.square[i];
     }
-    for (uint i = 0u; i < 2u; ++i) {
-        light.diffuse += params.fits.at[block].diffuse[10u + i] * f.material[i];
-        light.specular += params.fits.at[block].specular[10u + i] * f.material[i];
-    }
-    return Light(max(light.diffuse, vec3(0.0)), max(light.specular, vec3(0.0)));
+    return light;
 }
 
-// Standard deviation of the accumulated luminance around a pixel; diffuse, specular.
-vec2 deviation_around(Centre c) {
-    vec2 sum = vec2(0.0);
+// Accumulated light around a pixel on its surface.
+struct Surroundings {
+    Light mean;
+    Light variance;
+    float count; // of equal weights that would say as much
+};
+
+Surroundings look_around(Centre c, float frames) {
+    int stride = max(1, 4 - int(frames)); // gaps that close as the history grows
+    Light sum = Light(vec3(0.0), vec3(0.0));
+    Light squares = sum;
     float total = 0.0;
-    for (int i = 0; i < 9; ++i) {
-        ivec2 at = c.at + ivec2(i % 3 - 1, i / 3 - 1);
-        if (is_inside(at) && texelFetch(geometry_, tap_texel(c, at)).z == c.id) {
-            int texel = tap_texel(c, at);
-            vec4 moments = texelFetch(moments_, texel);
-            float of_mean = max(1.0 / max(texelFetch(length_, texel).x, 1.0), params.noisy_alpha / (2.0 - params.noisy_alpha));
-            sum += of_mean * max(vec2(0.0), moments.yw - moments.xz * moments.xz);
-            total += 1.0;
-        }
-    }
-    return sqrt(sum / max(total, 1.0));
-}
-
-// Mean of 7×7 pixels of the same surface; with gaps while the history is short and the noise is not known.
-Light stand_in(Centre c, float frames, Light own) {
-    bool is_mature = frames >= kMatureFrames;
-    int stride = is_mature ? 1 : max(1, 4 - int(frames));
-    vec2 reach = is_mature ? kDeviations * deviation_around(c) + 1e-4 : vec2(1e30);
-    vec2 centre = vec2(luminance(own.diffuse), luminance(own.specular));
-    Light sum = own;
-    vec2 total = vec2(1.0);
-    for (int i = 0; i < 49; ++i) {
-        ivec2 offset = (ivec2(i % 7, i / 7) - 3) * stride;
+    float total_of_squares = 0.0;
+    const int side = 2 * kRadius + 1;
+    for (int i = 0; i < side * side; ++i) {
+        ivec2 offset = (ivec2(i % side, i / side) - kRadius) * stride;
         ivec2 at = c.at + offset;
-        if (offset != ivec2(0) && is_inside(at)) {
+        if (is_inside(at)) {
             int texel = tap_texel(c, at);
             uvec4 other = texelFetch(geometry_, texel);
-            float weight = other.z == c.id ? max(geometry_weight(c, offset, other), kLeastWeight) : 0.0;
+            float least = other.z == c.id ? kLeastWeight : 0.0;
+            float w = offset == ivec2(0) ? 1.0 : max(geometry_weight(c, offset, other), least);
             vec3 diffuse = texelFetch(diffuse_, texel).rgb;
             vec3 specular = texelFetch(specular_, texel).rgb;
-            vec2 w = weight * exp(-abs(vec2(luminance(diffuse), luminance(specular)) - centre) / reach);
-            sum.diffuse += w.x * diffuse;
-            sum.specular += w.y * specular;
+            sum.diffuse += w * diffuse;
+            sum.specular += w * specular;
+            squares.diffuse += w * diffuse * diffuse;
+            squares.specular += w * specular * specular;
             total += w;
+            total_of_squares += w * w;
         }
     }
-    return Light(sum.diffuse / total.x, sum.specular / total.y);
+    Surroundings around;
+    around.mean = Light(sum.diffuse / total, sum.specular / total);
+    around.variance = Light(max(squares.diffuse / total - around.mean.diffuse * around.mean.diffuse, vec3(0.0)),
+                            max(squares.specular / total - around.mean.specular * around.mean.specular, vec3(0.0)));
+    around.count = total * total / total_of_squares;
+    return around;
+}
+
+vec3 limited(vec3 fit, vec3 mean, vec3 variance, float count) {
+    vec3 reach = kDeviations * sqrt(variance / count);
+    return clamp(fit, mean - reach, mean + reach);
 }
 
 void gather(int texel, float weight, inout Light sum, inout float total) {
@@ -126,18 +124,19 @@ bool gather_history(uint index, int page_start, out Light history) {
     return total > 0.0;
 }
 
-Light filtered(Centre c, uint page, uvec4 geometry, float frames, Light own) {
+// The block's fit where its surroundings allow it, else what they do allow.
+Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
     uint block = block_of(c.at, page);
-    vec2 trust = params.fits.at[block].trust;
-    Light light = own;
-    if (any(lessThan(trust, vec2(1.0)))) {
-        light = stand_in(c, frames, own);
+    float trust = params.fits.at[block].trust;
+    Surroundings around = look_around(c, frames);
+    if (trust == 0.0) {
+        return around.mean;
     }
-    if (any(greaterThan(trust, vec2(0.0)))) {
-        Light fit = evaluate(block, camera_offset(params.camera.at[0], c.at, geometry), c.normal, unpack_material(geometry.w));
-        light = Light(mix(light.diffuse, fit.diffuse, trust.x), mix(light.specular, fit.specular, trust.y));
-    }
-    return light;
+    Light fit = evaluate(block, camera_offset(params.camera.at[0], c.at, geometry), c.normal);
+    fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
+    fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
+    return Light(max(mix(around.mean.diffuse, fit.diffuse, trust), vec3(0.0)),
+                 max(mix(around.mean.specular, fit.specular, trust), vec3(0.0)));
 }
 
 void main() {
@@ -150,7 +149,7 @@ void main() {
     if (geometry.z != 0xFFFFFFFFu) {
         Centre c = load_centre(index, geometry);
         float frames = max(texelFetch(length_, int(index)).x, 1.0);
-        light = filtered(c, index / (params.width * params.height), geometry, frames, light);
+        light = filtered(c, index / (params.width * params.height), geometry, frames);
         Light history;
         if ((params.flags & kFlagTemporal) != 0u && gather_history(index, c.page_start, history)) {
             float alpha = max(params.alpha, 1.0 / frames);

@@ -17,15 +17,12 @@ layout(push_constant, scalar) uniform Push { BmfrParams params; };
 
 const uint kPixelsPerThread = kFitSide * kFitSide / kFitThreads;
 const uint kGram = kFitFeatures * (kFitFeatures + 1u) / 2u; // lower triangle, row by row
-const uint kGramSlots = 50;                                 // entries that are summed at a time
 const uint kColumns = 6u;                                   // red, green, blue; diffuse, specular
 const float kNoise = 1e-2;        // half width of the paper's uniform noise in the features
 const float kThinnest = 1.0 / 64; // an extent of this share of the largest one counts as no less
 const float kFullTrust = 256.0;   // pixels: a quarter of a block
-const float kMatureFrames = 4.0;  // whose variance says something
-const float kVisibleError = 1e-2; // of the block's light: less is no reason to distrust a fit
 
-shared float partial_[kGramSlots * kFitThreads];
+shared float partial_[kFitFeatures * kColumns * kFitThreads];
 shared float gram_[kGram];
 shared float right_[kFitFeatures * kColumns]; // right hand sides, then weights; features, then columns
 
@@ -34,20 +31,18 @@ struct BlockPixel {
     int texel;
     vec3 normal;
     vec3 offset; // from the camera
-    vec2 material;
 };
 
 BlockPixel load_pixel(CameraRecord camera, uint number) {
     uint index = gl_LocalInvocationID.x + kFitThreads * number;
     ivec2 at = params.first + ivec2(gl_WorkGroupID.xy * kFitSide + uvec2(index % kFitSide, index / kFitSide));
-    BlockPixel pixel = BlockPixel(false, 0, vec3(0.0), vec3(0.0), vec2(0.0));
+    BlockPixel pixel = BlockPixel(false, 0, vec3(0.0), vec3(0.0));
     if (is_inside(at)) {
         pixel.texel = int((gl_WorkGroupID.z * params.height + uint(at.y)) * params.width + uint(at.x));
         uvec4 geometry = texelFetch(geometry_, pixel.texel);
         pixel.has_surface = geometry.z != 0xFFFFFFFFu;
         pixel.normal = unpack_normal(geometry.y);
         pixel.offset = camera_offset(camera, at, geometry);
-        pixel.material = unpack_material(geometry.w);
     }
     return pixel;
 }
@@ -71,10 +66,6 @@ float sum_of(uint slot) {
     return sum;
 }
 
-vec3 sum3_of(uint slot) {
-    return vec3(sum_of(slot), sum_of(slot + 1u), sum_of(slot + 2u));
-}
-
 float least_of(uint slot) {
     float least = partial_[slot * kFitThreads];
     for (uint i = 1u; i < kFitThreads; ++i) {
@@ -88,7 +79,6 @@ FitFrame measure_block(CameraRecord camera, out float count) {
     vec3 low = vec3(1e30);
     vec3 negative_high = vec3(1e30);
     vec3 normals = vec3(0.0);
-    vec2 materials = vec2(0.0);
     count = 0.0;
     for (uint i = 0u; i < kPixelsPerThread; ++i) {
         BlockPixel pixel = load_pixel(camera, i);
@@ -96,27 +86,23 @@ FitFrame measure_block(CameraRecord camera, out float count) {
             low = min(low, pixel.offset);
             negative_high = min(negative_high, -pixel.offset);
             normals += pixel.normal;
-            materials += pixel.material;
             count += 1.0;
         }
     }
     put(0u, low);
     put(3u, negative_high);
     put(6u, normals);
-    put(9u, vec3(materials, count));
+    put(9u, count);
     barrier();
     low = vec3(least_of(0u), least_of(1u), least_of(2u));
     vec3 high = -vec3(least_of(3u), least_of(4u), least_of(5u));
-    count = sum_of(11u);
-    FitFrame frame;
-    frame.normal = sum3_of(6u) / max(count, 1.0);
-    frame.material = vec2(sum_of(9u), sum_of(10u)) / max(count, 1.0);
-    frame.centre = 0.5 * (low + high);
+    count = sum_of(9u);
+    vec3 normal = vec3(sum_of(6u), sum_of(7u), sum_of(8u)) / max(count, 1.0);
     vec3 extent = max(high - low, vec3(0.0));
     float largest = max(max(extent.x, extent.y), extent.z);
-    frame.scale = 2.0 / max(extent, vec3(max(kThinnest * largest, 1e-20)));
+    vec3 scale = 2.0 / max(extent, vec3(max(kThinnest * largest, 1e-20)));
     barrier();
-    return frame;
+    return FitFrame(normal, 0.5 * (low + high), scale);
 }
 
 // One invocation's share of the normal equations.
@@ -125,17 +111,12 @@ struct Products {
     vec3 normal;
     vec3 position;
     vec3 square;
-    vec2 material;
     mat3 normal_normal;
     mat3 position_normal; // rows: the first factor
     mat3 position_position;
     mat3 square_normal;
     mat3 square_position;
     mat3 square_square;
-    mat3x2 material_normal;
-    mat3x2 material_position;
-    mat3x2 material_square;
-    mat2 material_material;
 };
 
 struct LightProducts {
@@ -143,7 +124,6 @@ struct LightProducts {
     mat3 normal; // columns: the features
     mat3 position;
     mat3 square;
-    mat2x3 material;
 };
 
 void add(inout Products p, Features f) {
@@ -151,17 +131,12 @@ void add(inout Products p, Features f) {
     p.normal += f.normal;
     p.position += f.position;
     p.square += f.square;
-    p.material += f.material;
     p.normal_normal += outerProduct(f.normal, f.normal);
     p.position_normal += outerProduct(f.position, f.normal);
     p.position_position += outerProduct(f.position, f.position);
     p.square_normal += outerProduct(f.square, f.normal);
     p.square_position += outerProduct(f.square, f.position);
     p.square_square += outerProduct(f.square, f.square);
-    p.material_normal += outerProduct(f.material, f.normal);
-    p.material_position += outerProduct(f.material, f.position);
-    p.material_square += outerProduct(f.material, f.square);
-    p.material_material += outerProduct(f.material, f.material);
 }
 
 void add(inout LightProducts p, Features f, vec3 light) {
@@ -169,118 +144,76 @@ void add(inout LightProducts p, Features f, vec3 light) {
     p.normal += outerProduct(light, f.normal);
     p.position += outerProduct(light, f.position);
     p.square += outerProduct(light, f.square);
-    p.material += outerProduct(light, f.material);
 }
 
 uint gram_index(uint row, uint column) {
     return row * (row + 1u) / 2u + column;
 }
 
-// Entries are summed in two parts: rows 0 to 6, and the rest.
-const uint kSecondPart = 28;
-
-void put_gram(uint row, uint column, uint first, mat3 products) {
+// Products of three features with three others at `row` and `column`; on the diagonal only the lower triangle.
+void put_gram(uint row, uint column, mat3 products) {
     for (uint r = 0u; r < 3u; ++r) {
         for (uint c = 0u; c < 3u; ++c) {
             if (column + c <= row + r) {
-                put(gram_index(row + r, column + c) - first, products[c][r]);
+                put(gram_index(row + r, column + c), products[c][r]);
             }
         }
     }
 }
 
-void put_gram(uint row, uint column, uint first, mat3x2 products) {
-    for (uint c = 0u; c < 3u; ++c) {
-        put(gram_index(row, column + c) - first, products[c][0]);
-        put(gram_index(row + 1u, column + c) - first, products[c][1]);
-    }
-}
-
-void put_low_rows(Products p) {
+void put_products(Products p) {
     put(0u, p.count);
     for (uint i = 0u; i < 3u; ++i) {
         put(gram_index(1u + i, 0u), p.normal[i]);
         put(gram_index(4u + i, 0u), p.position[i]);
+        put(gram_index(7u + i, 0u), p.square[i]);
     }
-    put_gram(1u, 1u, 0u, p.normal_normal);
-    put_gram(4u, 1u, 0u, p.position_normal);
-    put_gram(4u, 4u, 0u, p.position_position);
+    put_gram(1u, 1u, p.normal_normal);
+    put_gram(4u, 1u, p.position_normal);
+    put_gram(4u, 4u, p.position_position);
+    put_gram(7u, 1u, p.square_normal);
+    put_gram(7u, 4u, p.square_position);
+    put_gram(7u, 7u, p.square_square);
 }
 
-void put_high_rows(Products p) {
+void put_light(uint column, LightProducts p) {
+    put(column, p.light);
     for (uint i = 0u; i < 3u; ++i) {
-        put(gram_index(7u + i, 0u) - kSecondPart, p.square[i]);
+        put((1u + i) * kColumns + column, p.normal[i]);
+        put((4u + i) * kColumns + column, p.position[i]);
+        put((7u + i) * kColumns + column, p.square[i]);
     }
-    put(gram_index(10u, 0u) - kSecondPart, p.material.x);
-    put(gram_index(11u, 0u) - kSecondPart, p.material.y);
-    put_gram(7u, 1u, kSecondPart, p.square_normal);
-    put_gram(7u, 4u, kSecondPart, p.square_position);
-    put_gram(7u, 7u, kSecondPart, p.square_square);
-    put_gram(10u, 1u, kSecondPart, p.material_normal);
-    put_gram(10u, 4u, kSecondPart, p.material_position);
-    put_gram(10u, 7u, kSecondPart, p.material_square);
-    put(gram_index(10u, 10u) - kSecondPart, p.material_material[0][0]);
-    put(gram_index(11u, 10u) - kSecondPart, p.material_material[0][1]);
-    put(gram_index(11u, 11u) - kSecondPart, p.material_material[1][1]);
-}
-
-void put_light(LightProducts p) {
-    put(0u, p.light);
-    for (uint i = 0u; i < 3u; ++i) {
-        put(3u * (1u + i), p.normal[i]);
-        put(3u * (4u + i), p.position[i]);
-        put(3u * (7u + i), p.square[i]);
-    }
-    put(30u, p.material[0]);
-    put(33u, p.material[1]);
-}
-
-void sum_gram(Products p) {
-    uint thread = gl_LocalInvocationID.x;
-    put_low_rows(p);
-    barrier();
-    if (thread < kSecondPart) {
-        gram_[thread] = sum_of(thread);
-    }
-    barrier();
-    put_high_rows(p);
-    barrier();
-    if (thread < kGram - kSecondPart) {
-        gram_[kSecondPart + thread] = sum_of(thread);
-    }
-    barrier();
-}
-
-void sum_light(uint column, LightProducts p) {
-    uint thread = gl_LocalInvocationID.x;
-    put_light(p);
-    barrier();
-    if (thread < 3u * kFitFeatures) {
-        right_[thread / 3u * kColumns + column + thread % 3u] = sum_of(thread);
-    }
-    barrier();
 }
 
 void sum_products(CameraRecord camera, FitFrame frame) {
-    const vec3 none = vec3(0.0);
     const mat3 zero = mat3(0.0);
-    const mat3x2 flat_zero = mat3x2(0.0);
-    Products gram = Products(0.0, none, none, none, vec2(0.0), zero, zero, zero, zero, zero, zero, flat_zero, flat_zero,
-                             flat_zero, mat2(0.0));
-    LightProducts diffuse = LightProducts(none, zero, zero, zero, mat2x3(0.0));
-    LightProducts specular = diffuse;
+    const vec3 none = vec3(0.0);
+    Products gram = Products(0.0, none, none, none, zero, zero, zero, zero, zero, zero);
+    LightProducts diffuse = LightProducts(none, zero, zero, zero);
+    LightProducts specular = LightProducts(none, zero, zero, zero);
     for (uint i = 0u; i < kPixelsPerThread; ++i) {
         BlockPixel pixel = load_pixel(camera, i);
         if (pixel.has_surface) {
-            Features f = make_features(frame, pixel.offset, pixel.normal, pixel.material);
+            Features f = make_features(frame, pixel.offset, pixel.normal);
             add(gram, f);
             add(diffuse, f, texelFetch(diffuse_, pixel.texel).rgb);
             add(specular, f, texelFetch(specular_, pixel.texel).rgb);
         }
     }
-    sum_gram(gram);
-    sum_light(0u, diffuse);
-    sum_light(3u, specular);
+    uint thread = gl_LocalInvocationID.x;
+    put_products(gram);
+    barrier();
+    if (thread < kGram) {
+        gram_[thread] = sum_of(thread);
+    }
+    barrier();
+    put_light(0u, diffuse);
+    put_light(3u, specular);
+    barrier();
+    if (thread < kFitFeatures * kColumns) {
+        right_[thread] = sum_of(thread);
+    }
+    barrier();
 }
 
 // Lower Cholesky factor of the products and the ridge, in place. The ridge is what uniform noise adds to the squares in
@@ -338,64 +271,6 @@ vec3 weight_of(uint feature, uint column) {
     return vec3(right_[at], right_[at + 1u], right_[at + 2u]);
 }
 
-// Luminance of a fit.
-struct LuminanceFit {
-    float constant;
-    vec3 normal;
-    vec3 position;
-    vec3 square;
-    vec2 material;
-};
-
-vec3 luminances(uint feature, uint column) {
-    return vec3(luminance(weight_of(feature, column)), luminance(weight_of(feature + 1u, column)),
-                luminance(weight_of(feature + 2u, column)));
-}
-
-LuminanceFit luminance_fit(uint column) {
-    return LuminanceFit(luminance(weight_of(0u, column)), luminances(1u, column), luminances(4u, column),
-                        luminances(7u, column),
-                        vec2(luminance(weight_of(10u, column)), luminance(weight_of(11u, column))));
-}
-
-float evaluate(LuminanceFit fit, Features f) {
-    return fit.constant + dot(fit.normal, f.normal) + dot(fit.position, f.position) + dot(fit.square, f.square) +
-           dot(fit.material, f.material);
-}
-
-// How far the fits may be trusted. What they leave over should be the noise of the accumulated light, which the moments
-// tell of; four times its variance or more is light that features cannot express: edges of shadows, highlights, mirrors.
-vec2 measure_trust(CameraRecord camera, FitFrame frame, float surfaces) {
-    LuminanceFit diffuse = luminance_fit(0u);
-    LuminanceFit specular = luminance_fit(3u);
-    vec2 squares = vec2(0.0);  // of what is left over; diffuse, specular
-    vec2 noise = vec2(0.0);
-    float count = 0.0;
-    for (uint i = 0u; i < kPixelsPerThread; ++i) {
-        BlockPixel pixel = load_pixel(camera, i);
-        float frames = texelFetch(length_, pixel.texel).x;
-        if (pixel.has_surface && frames >= kMatureFrames) {
-            Features f = make_features(frame, pixel.offset, pixel.normal, pixel.material);
-            vec2 left = vec2(evaluate(diffuse, f) - luminance(texelFetch(diffuse_, pixel.texel).rgb),
-                             evaluate(specular, f) - luminance(texelFetch(specular_, pixel.texel).rgb));
-            squares += left * left;
-            vec4 moments = texelFetch(moments_, pixel.texel);
-            float of_mean = max(1.0 / frames, params.noisy_alpha / (2.0 - params.noisy_alpha));
-            noise += of_mean * max(vec2(0.0), moments.yw - moments.xz * moments.xz);
-            count += 1.0;
-        }
-    }
-    put(0u, vec3(squares, count));
-    put(3u, vec3(noise, 0.0));
-    barrier();
-    count = sum_of(2u);
-    vec2 error = kVisibleError * vec2(diffuse.constant, specular.constant);
-    vec2 expected = vec2(sum_of(3u), sum_of(4u)) + max(count, 1.0) * error * error;
-    vec2 ratio = vec2(sum_of(0u), sum_of(1u)) / max(expected, vec2(1e-30));
-    vec2 trust = 2.0 * count < surfaces ? vec2(1.0) : clamp(2.0 - 0.5 * ratio, 0.0, 1.0);
-    return trust * clamp(2.0 * surfaces / kFullTrust - 1.0, 0.0, 1.0);
-}
-
 void main() {
     CameraRecord camera = params.camera.at[0];
     uint block = (gl_WorkGroupID.z * params.blocks.y + gl_WorkGroupID.y) * params.blocks.x + gl_WorkGroupID.x;
@@ -404,19 +279,17 @@ void main() {
     FitFrame frame = measure_block(camera, count);
     if (2.0 * count <= kFullTrust) { // the same for all invocations
         if (thread == 0u) {
-            params.fits.at[block].trust = vec2(0.0);
+            params.fits.at[block].trust = 0.0;
         }
         return;
     }
     sum_products(camera, frame);
     solve(count);
-    vec2 trust = measure_trust(camera, frame, count);
     if (thread == 0u) {
         params.fits.at[block].normal = frame.normal;
         params.fits.at[block].centre = frame.centre;
         params.fits.at[block].scale = frame.scale;
-        params.fits.at[block].material = frame.material;
-        params.fits.at[block].trust = trust;
+        params.fits.at[block].trust = min(2.0 * count / kFullTrust - 1.0, 1.0);
     }
     if (thread < kFitFeatures) {
         params.fits.at[block].diffuse[thread] = weight_of(thread, 0u);

@@ -78,8 +78,7 @@ const Light& Bmfr::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     params.first = first_pixel(frame.number);
     params.flags = has_filtered_ && frame.has_history ? shared::kFlagTemporal : 0;
     params.sigma_depth = 1.0F; // as in SVGF
-    params.normal_squarings = 7;
-    params.noisy_alpha = frame.settings.temporal_alpha;
+    params.normal_squarings = 5;
     params.alpha = frame.settings.temporal_alpha * kFilteredShare;
     const gpu::BindingSet& set = sets_[accumulation_.current()];
     recorder.stage("denoise");

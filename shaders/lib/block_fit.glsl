@@ -9,7 +9,6 @@ struct Features {
     vec3 normal;
     vec3 position;
     vec3 square;
-    vec2 material;
 };
 
 // What they are counted from.
@@ -17,7 +16,6 @@ struct FitFrame {
     vec3 normal;
     vec3 centre;
     vec3 scale;
-    vec2 material;
 };
 
 // From the camera to the surface that a pixel shows, metres along the world's axes.
@@ -25,14 +23,9 @@ vec3 camera_offset(CameraRecord camera, ivec2 at, uvec4 geometry) {
     return camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x);
 }
 
-// Roughness, metallic.
-vec2 unpack_material(uint bits) {
-    return vec2(bits & 0xFFu, (bits >> 8) & 0xFFu) / 255.0;
-}
-
-Features make_features(FitFrame frame, vec3 offset, vec3 normal, vec2 material) {
+Features make_features(FitFrame frame, vec3 offset, vec3 normal) {
     vec3 q = (offset - frame.centre) * frame.scale;
-    return Features(normal - frame.normal, q, q * q, material - frame.material);
+    return Features(normal - frame.normal, q, q * q);
 }
 
 #endif

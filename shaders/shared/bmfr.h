@@ -8,16 +8,15 @@ SHARED_BEGIN
 
 const uint kFitSide = 32;     // pixels of a block in each direction
 const uint kFitThreads = 64;  // invocations per block
-const uint kFitFeatures = 12; // 1, n, q, q², m: see BlockFit
+const uint kFitFeatures = 10; // 1, n, q, q²: see BlockFit
 
-// Illumination of one block: Σ weight · feature. With n the shading normal less its mean,
-// q = (position − camera's origin − centre) · scale, component by component, and m roughness and metallic less their means.
+// Illumination of one block: Σ weight · feature. With n the shading normal less its mean, and
+// q = (position − camera's origin − centre) · scale, component by component.
 struct BlockFit {
-    vec3 normal;   // mean over the block
-    vec3 centre;   // metres
-    vec3 scale;    // brings the block's positions to −1 … 1
-    vec2 material; // mean
-    vec2 trust;   // in the fits of diffuse and specular: 1 use it, 0 do not
+    vec3 normal;  // mean over the block
+    vec3 centre;  // metres
+    vec3 scale;   // brings the block's positions to −1 … 1
+    float trust;  // 0: too few pixels show a surface for a fit; 1: enough
     vec3 diffuse[kFitFeatures];
     vec3 specular[kFitFeatures];
 };
@@ -36,10 +35,9 @@ struct BmfrParams {
     uvec2 blocks;           // columns, rows
     ivec2 first;            // pixel in which the first block begins, ≤ 0
     uint flags;             // kFlagTemporal: `taps` lead to a filtered frame
-    float sigma_depth;      // of the filter that stands in where there is no trust
+    float sigma_depth;      // of the weights of a pixel's surroundings, as in FilterParams
     uint normal_squarings;
-    float noisy_alpha;      // least weight of a frame in the illumination that is fitted
-    float alpha;            // … in the filtered result
+    float alpha;            // least weight of a frame in the result
 };
 const uint kBmfrPreviousDiffuse = 5; // after kFilter…: filtered, rgb
 const uint kBmfrPreviousSpecular = 6;
