@@ -18,7 +18,8 @@ layout(set = 0, binding = kBmfrPreviousSpecular) uniform samplerBuffer previous_
 
 const float kLeastWeight = 0.02;   // as in svgf_variance.comp
 const int kRadius = 2;
-const float kDeviations = 2.0;
+const float kKnownFrames = 4.0;    // of history: fewer do not tell how much of a difference is noise
+const float kDeviations = 2.0;     // of the surroundings' mean, that a fit may be away from it
 
 struct Light {
     vec3 diffuse;
@@ -53,15 +54,15 @@ struct Surroundings {
     float count; // of equal weights that would say as much
 };
 
-Surroundings look_around(Centre c, float frames) {
-    int stride = max(1, 4 - int(frames)); // gaps that close as the history grows
+// `stride` pixels between taps, `radius` taps on each side.
+Surroundings look_around(Centre c, int stride, int radius) {
     Light sum = Light(vec3(0.0), vec3(0.0));
     Light squares = sum;
     float total = 0.0;
     float total_of_squares = 0.0;
-    const int side = 2 * kRadius + 1;
+    int side = 2 * radius + 1;
     for (int i = 0; i < side * side; ++i) {
-        ivec2 offset = (ivec2(i % side, i / side) - kRadius) * stride;
+        ivec2 offset = (ivec2(i % side, i / side) - radius) * stride;
         ivec2 at = c.at + offset;
         if (is_inside(at)) {
             int texel = tap_texel(c, at);
@@ -124,17 +125,20 @@ bool gather_history(uint index, int page_start, out Light history) {
     return total > 0.0;
 }
 
-// The block's fit where its surroundings allow it, else what they do allow.
+// The block's fit, as far as its surroundings bear it out; where there is none, they themselves.
 Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
     uint block = block_of(c.at, page);
     float trust = params.fits.at[block].trust;
-    Surroundings around = look_around(c, frames);
+    bool is_known = frames >= kKnownFrames;
+    Surroundings around = look_around(c, is_known ? 1 : 4 - int(frames), trust < 1.0 || is_known ? kRadius : 0);
     if (trust == 0.0) {
         return around.mean;
     }
     Light fit = evaluate(block, camera_offset(params.camera.at[0], c.at, geometry), c.normal);
-    fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
-    fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
+    if (is_known) {
+        fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
+        fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
+    }
     return Light(max(mix(around.mean.diffuse, fit.diffuse, trust), vec3(0.0)),
                  max(mix(around.mean.specular, fit.specular, trust), vec3(0.0)));
 }

@@ -5,7 +5,8 @@
 // Transactions on Graphics 38(5), 2019, sections 3.2 and 3.3.
 // Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone through
 // once; the expectation of the noise that is added to the features there is a ridge here. Positions count from the middle
-// of the block. Pixels without a surface and outside the image do not take part. Two signals. Sums have a fixed order,
+// of the block. Pixels without a surface do not take part; blocks at the border
+// are fitted to the nearest 32×32 pixels of the image instead of mirrored ones. Two signals. Sums have a fixed order,
 // whatever the size of a subgroup.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/bmfr.h"
@@ -35,7 +36,10 @@ struct BlockPixel {
 
 BlockPixel load_pixel(CameraRecord camera, uint number) {
     uint index = gl_LocalInvocationID.x + kFitThreads * number;
-    ivec2 at = params.first + ivec2(gl_WorkGroupID.xy * kFitSide + uvec2(index % kFitSide, index / kFitSide));
+    ivec2 size = ivec2(params.width, params.height);
+    ivec2 corner = params.first + ivec2(gl_WorkGroupID.xy * kFitSide);
+    corner = max(min(corner, size - int(kFitSide)), ivec2(0)); // at the border: the nearest pixels inside
+    ivec2 at = corner + ivec2(index % kFitSide, index / kFitSide);
     BlockPixel pixel = BlockPixel(false, 0, vec3(0.0), vec3(0.0));
     if (is_inside(at)) {
         pixel.texel = int((gl_WorkGroupID.z * params.height + uint(at.y)) * params.width + uint(at.x));
