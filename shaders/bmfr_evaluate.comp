@@ -3,7 +3,9 @@
 // Illumination of every pixel from the fit of its block, blended with the filtered frames before.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
 // Transactions on Graphics 38(5), 2019, section 3.4.
-// Differs: where the fit is not to be trusted, a filter that stops at edges stands in.
+// Differs: a fit that is too far from the mean of the light around the pixel, on its surface, does not express that light
+// (edges of shadows, highlights, mirrors) and is brought back to where noise may explain the difference. Sums of features
+// go below zero and above everything, and what they add in one place they miss in another.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "shared/bmfr.h"
@@ -16,10 +18,9 @@ layout(push_constant, scalar) uniform Push { BmfrParams params; };
 layout(set = 0, binding = kBmfrPreviousDiffuse) uniform samplerBuffer previous_diffuse_;
 layout(set = 0, binding = kBmfrPreviousSpecular) uniform samplerBuffer previous_specular_;
 
-const float kLeastWeight = 0.02;   // as in svgf_variance.comp
-const int kRadius = 2;
-const float kKnownFrames = 4.0;    // of history: fewer do not tell how much of a difference is noise
-const float kDeviations = 2.0;     // of the surroundings' mean, that a fit may be away from it
+const float kLeastWeight = 0.02; // as in svgf_variance.comp
+const float kYoungFrames = 4.0;
+const float kDeviations = 2.0;   // of the surroundings' mean, that a fit may be away from it
 
 struct Light {
     vec3 diffuse;
@@ -54,15 +55,14 @@ struct Surroundings {
     float count; // of equal weights that would say as much
 };
 
-// `stride` pixels between taps, `radius` taps on each side.
-Surroundings look_around(Centre c, int stride, int radius) {
+Surroundings look_around(Centre c, int radius) {
     Light sum = Light(vec3(0.0), vec3(0.0));
     Light squares = sum;
     float total = 0.0;
     float total_of_squares = 0.0;
     int side = 2 * radius + 1;
     for (int i = 0; i < side * side; ++i) {
-        ivec2 offset = (ivec2(i % side, i / side) - radius) * stride;
+        ivec2 offset = ivec2(i % side, i / side) - radius;
         ivec2 at = c.at + offset;
         if (is_inside(at)) {
             int texel = tap_texel(c, at);
@@ -125,20 +125,17 @@ bool gather_history(uint index, int page_start, out Light history) {
     return total > 0.0;
 }
 
-// The block's fit, as far as its surroundings bear it out; where there is none, they themselves.
+// The block's fit, as far as the surroundings bear it out; they themselves where there is no fit.
 Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
     uint block = block_of(c.at, page);
+    Surroundings around = look_around(c, frames < kYoungFrames ? 3 : 2);
     float trust = params.fits.at[block].trust;
-    bool is_known = frames >= kKnownFrames;
-    Surroundings around = look_around(c, is_known ? 1 : 4 - int(frames), trust < 1.0 || is_known ? kRadius : 0);
     if (trust == 0.0) {
         return around.mean;
     }
     Light fit = evaluate(block, camera_offset(params.camera.at[0], c.at, geometry), c.normal);
-    if (is_known) {
-        fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
-        fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
-    }
+    fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
+    fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
     return Light(max(mix(around.mean.diffuse, fit.diffuse, trust), vec3(0.0)),
                  max(mix(around.mean.specular, fit.specular, trust), vec3(0.0)));
 }

@@ -5,9 +5,8 @@
 // Transactions on Graphics 38(5), 2019, sections 3.2 and 3.3.
 // Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone through
 // once; the expectation of the noise that is added to the features there is a ridge here. Positions count from the middle
-// of the block. Pixels without a surface do not take part; blocks at the border
-// are fitted to the nearest 32×32 pixels of the image instead of mirrored ones. Two signals. Sums have a fixed order,
-// whatever the size of a subgroup.
+// of the block. Pixels without a surface do not take part, and blocks at the border are fitted to the nearest 32×32 pixels
+// of the image instead of mirrored ones. Two signals. Sums have a fixed order, whatever the size of a subgroup.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/bmfr.h"
 
