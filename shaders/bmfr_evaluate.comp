@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Illumination of every pixel from the fit of its block, blended with the filtered frames before.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
-// Transactions on Graphics 38(5), 2019, section 3.4.
+// Transactions on Graphics 38(5), 2019.
 // Differs: a fit that is too far from the mean of the light around the pixel, on its surface, does not express that light
 // (edges of shadows, highlights, mirrors) and is brought back to where noise may explain the difference. Sums of features
 // go below zero and above everything, and what they add in one place they miss in another.
@@ -19,7 +19,7 @@ layout(set = 0, binding = kBmfrPreviousDiffuse) uniform samplerBuffer previous_d
 layout(set = 0, binding = kBmfrPreviousSpecular) uniform samplerBuffer previous_specular_;
 
 const float kLeastWeight = 0.02; // as in svgf_variance.comp
-const float kYoungFrames = 4.0;
+const float kYoungFrames = 4.0;  // with a shorter history pixels look farther around
 const float kDeviations = 2.0;   // of the surroundings' mean, that a fit may be away from it
 
 struct Light {
@@ -48,7 +48,7 @@ Light evaluate(uint block, vec3 offset, vec3 normal) {
     return light;
 }
 
-// Accumulated light around a pixel on its surface.
+// Accumulated light around a pixel, on its surface.
 struct Surroundings {
     Light mean;
     Light variance;
@@ -88,7 +88,7 @@ Surroundings look_around(Centre c, int radius) {
 }
 
 vec3 limited(vec3 fit, vec3 mean, vec3 variance, float count) {
-    vec3 reach = kDeviations * sqrt(variance / count);
+    vec3 reach = kDeviations * sqrt(variance / max(count - 1.0, 1e-3)); // a pixel alone says nothing
     return clamp(fit, mean - reach, mean + reach);
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Least squares fit of a block's accumulated illumination to features of its surfaces; one group per block.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
-// Transactions on Graphics 38(5), 2019, sections 3.2 and 3.3.
+// Transactions on Graphics 38(5), 2019.
 // Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone through
 // once; the expectation of the noise that is added to the features there is a ridge here. Positions count from the middle
 // of the block. Pixels without a surface do not take part, and blocks at the border are fitted to the nearest 32×32 pixels
@@ -33,12 +33,14 @@ struct BlockPixel {
     vec3 offset; // from the camera
 };
 
+ivec2 block_corner() {
+    return params.first + ivec2(gl_WorkGroupID.xy * kFitSide);
+}
+
 BlockPixel load_pixel(CameraRecord camera, uint number) {
     uint index = gl_LocalInvocationID.x + kFitThreads * number;
-    ivec2 size = ivec2(params.width, params.height);
-    ivec2 corner = params.first + ivec2(gl_WorkGroupID.xy * kFitSide);
-    corner = max(min(corner, size - int(kFitSide)), ivec2(0)); // at the border: the nearest pixels inside
-    ivec2 at = corner + ivec2(index % kFitSide, index / kFitSide);
+    ivec2 inside = max(min(block_corner(), ivec2(params.width, params.height) - int(kFitSide)), ivec2(0));
+    ivec2 at = inside + ivec2(index % kFitSide, index / kFitSide);
     BlockPixel pixel = BlockPixel(false, 0, vec3(0.0), vec3(0.0));
     if (is_inside(at)) {
         pixel.texel = int((gl_WorkGroupID.z * params.height + uint(at.y)) * params.width + uint(at.x));
@@ -278,6 +280,11 @@ void main() {
     CameraRecord camera = params.camera.at[0];
     uint block = (gl_WorkGroupID.z * params.blocks.y + gl_WorkGroupID.y) * params.blocks.x + gl_WorkGroupID.x;
     uint thread = gl_LocalInvocationID.x;
+    ivec2 corner = block_corner();
+    if (any(lessThanEqual(corner, ivec2(-int(kFitSide)))) ||
+        any(greaterThanEqual(corner, ivec2(params.width, params.height)))) {
+        return; // beside the image
+    }
     float count;
     FitFrame frame = measure_block(camera, count);
     if (2.0 * count <= kFullTrust) { // the same for all invocations

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
 
+#include <array>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
@@ -104,6 +105,16 @@ TEST(Flags, ReadsEverything) {
 TEST(Flags, RefusesToListenForTheWorld) {
     for (const char* const listen : {"0.0.0.0:50151", "192.168.1.4:50151", "[::]:50151", "example.org:80"}) {
         EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("loopback"))) << listen;
+    }
+}
+
+TEST(Flags, KnowsEveryDenoiser) {
+    constexpr std::array kWords{std::pair("svgf+", Denoiser::kSvgfPlus), std::pair("svgf", Denoiser::kSvgf),
+                                std::pair("bmfr", Denoiser::kBmfr), std::pair("none", Denoiser::kNone)};
+    for (const auto& [word, denoiser] : kWords) {
+        const Invocation invocation = read({"--scene", kFile, "--denoiser", word});
+        EXPECT_TRUE(invocation.problems.empty()) << word;
+        EXPECT_EQ(invocation.config.settings.denoiser, denoiser) << word;
     }
 }
 
