@@ -220,6 +220,13 @@ void add_frame_command(CLI::App& app) {
     command->add_option("--bounces", options->settings.max_bounces)->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("!--no-nee", options->settings.next_event_estimation, "without next event estimation");
     command->add_flag("!--no-guard-band", options->guard_band, "source without guard band, as in the paper");
+    command->add_option("--denoiser", options->settings.denoiser, "svgf+, svgf, bmfr or none")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Denoiser>{{"svgf+", Denoiser::kSvgfPlus},
+                                                                            {"svgf", Denoiser::kSvgf},
+                                                                            {"bmfr", Denoiser::kBmfr},
+                                                                            {"none", Denoiser::kNone}},
+                                            CLI::ignore_case))
+        ->default_str("svgf+");
     command
         ->add_option("--holes", options->holes,
                      "all, none (path traced), or a list of previous,isolated,cascade,source,denoise")

@@ -5,10 +5,12 @@
 // Follows: the two histories and the history fix of NVIDIA's ReLAX (D. Zhdanov, Fast Denoising with Self-Stabilizing
 // Recurrent Blurs, GTC 2020). Differs: the short history is the first moment of luminance, which is there anyway.
 #extension GL_GOOGLE_include_directive : require
-#include "lib/filter_taps.glsl"
 #include "lib/linear_index.glsl"
 
 layout(local_size_x = kLinearGroup) in;
+layout(push_constant, scalar) uniform Push { FilterParams params; };
+
+#include "lib/filter_taps.glsl"
 
 const float kYoungFrames = 4.0;
 const float kLeastWeight = 0.02;   // as in svgf_variance.comp

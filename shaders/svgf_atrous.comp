@@ -3,10 +3,12 @@
 // One level of the edge-avoiding à-trous wavelet transform over diffuse and specular illumination together: B3 spline,
 // 5×5 or its inner 3×3, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
 #extension GL_GOOGLE_include_directive : require
-#include "lib/filter_taps.glsl"
 #include "lib/linear_index.glsl"
 
 layout(local_size_x = kLinearGroup) in;
+layout(push_constant, scalar) uniform Push { FilterParams params; };
+
+#include "lib/filter_taps.glsl"
 
 struct Signal {
     vec4 sum;    // colour, variance

@@ -4,10 +4,12 @@
 // Differs: pixels of the same surface always count a little, so that thin and strongly curved parts, which find no
 // partner by normal and depth, do not stay at one sample (black specks along outlines).
 #extension GL_GOOGLE_include_directive : require
-#include "lib/filter_taps.glsl"
 #include "lib/linear_index.glsl"
 
 layout(local_size_x = kLinearGroup) in;
+layout(push_constant, scalar) uniform Push { FilterParams params; };
+
+#include "lib/filter_taps.glsl"
 
 const float kLeastWeight = 0.02; // 48 taps: together at most as much as the pixel itself
 

@@ -22,11 +22,15 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
         preset.settings.denoiser = Denoiser::kSvgf;
         return preset;
     }
+    if (name == "bmfr") {
+        preset.settings.denoiser = Denoiser::kBmfr;
+        return preset;
+    }
     return std::nullopt;
 }
 
 std::string preset_names() {
-    return "reprojected, svgf, ours";
+    return "reprojected, svgf, bmfr, ours";
 }
 
 } // namespace fieldcast

@@ -12,9 +12,9 @@ struct Preset {
     std::string sources = "middle"; ///< parse_sources()
 };
 
-/// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf": SVGF with its paper's parameters.
-/// Both without guard band and with path traced holes, as in the light field paper. "ours": the defaults, holes cascaded
-/// from the corners of a grid of `rows` × `cols`. Empty if there is no such preset.
+/// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf", "bmfr": with those papers' parameters.
+/// These three without guard band and with path traced holes, as in the light field paper. "ours": the defaults, holes
+/// cascaded from the corners of a grid of `rows` × `cols`. Empty if there is no such preset.
 std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols);
 
 /// "a, b, c", for messages.

@@ -11,6 +11,7 @@ enum class Denoiser : std::uint8_t {
     kNone = 0,
     kSvgf = 1,     ///< with its paper's parameters
     kSvgfPlus = 2, ///< two histories, sharper and faster (docs/lightfield.md)
+    kBmfr = 3,     ///< blockwise fits, with its paper's parameters
 };
 enum class ToneMap : std::uint8_t { kClampSrgb = 0, kAces = 1 };
 

@@ -4,9 +4,13 @@
 namespace fieldcast::render {
 
 IlluminationFilter::IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene)
-    : accumulation_(device, scene), svgf_(device, accumulation_), result_(&accumulation_.noisy()) {}
+    : accumulation_(device, scene), svgf_(device, accumulation_), bmfr_(device, accumulation_),
+      result_(&accumulation_.noisy()) {}
 
 void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+    if (frame.is_still || frame.settings.denoiser != Denoiser::kBmfr) {
+        bmfr_.forget();
+    }
     if (frame.is_still) {
         accumulation_.record(recorder, frame, {});
         result_ = &accumulation_.now().light;
@@ -24,6 +28,10 @@ void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& fram
     case Denoiser::kSvgfPlus:
         accumulation_.record(recorder, frame, Svgf::accumulation_options(frame.settings.denoiser));
         result_ = &svgf_.record(recorder, frame);
+        break;
+    case Denoiser::kBmfr:
+        accumulation_.record(recorder, frame, Bmfr::accumulation_options());
+        result_ = &bmfr_.record(recorder, frame);
         break;
     }
 }

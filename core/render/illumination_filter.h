@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/render/bmfr.h"
 #include "core/render/svgf.h"
 
 namespace fieldcast::render {
@@ -28,6 +29,7 @@ public:
 private:
     Accumulation accumulation_;
     Svgf svgf_;
+    Bmfr bmfr_;
     const Light* result_ = nullptr;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/kernels.h"
 
+#include "shaders/bmfr_evaluate.spv.h"
+#include "shaders/bmfr_fit.spv.h"
 #include "shaders/cascade_holes.spv.h"
 #include "shaders/composite_layers_bvh.spv.h"
 #include "shaders/composite_layers_rayquery.spv.h"
@@ -40,6 +42,10 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return gpu::KernelCode{name, bvh ? own : query};
     };
     switch (id) {
+    case KernelId::kBmfrEvaluate:
+        return {"bmfr_evaluate", bmfr_evaluate_spv};
+    case KernelId::kBmfrFit:
+        return {"bmfr_fit", bmfr_fit_spv};
     case KernelId::kCascadeHoles:
         return {"cascade_holes", cascade_holes_spv};
     case KernelId::kCountHoles:

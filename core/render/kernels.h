@@ -8,6 +8,8 @@ namespace fieldcast::render {
 
 /// The embedded kernels (shaders/*.comp).
 enum class KernelId {
+    kBmfrEvaluate,
+    kBmfrFit,
     kCascadeHoles,
     kCountHoles,
     kFilterHoles,

@@ -22,6 +22,8 @@ v1::Denoiser denoiser_to_proto(Denoiser denoiser) {
         return v1::DENOISER_SVGF;
     case Denoiser::kSvgfPlus:
         return v1::DENOISER_SVGF_PLUS;
+    case Denoiser::kBmfr:
+        return v1::DENOISER_BMFR;
     }
     return v1::DENOISER_UNSPECIFIED;
 }
@@ -34,6 +36,8 @@ std::optional<Denoiser> denoiser_from_proto(int number) {
         return Denoiser::kSvgf;
     case v1::DENOISER_SVGF_PLUS:
         return Denoiser::kSvgfPlus;
+    case v1::DENOISER_BMFR:
+        return Denoiser::kBmfr;
     default: // any number may stand in a message
         return std::nullopt;
     }

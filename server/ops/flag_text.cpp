@@ -185,6 +185,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     config.settings.next_event_estimation = !text.lacks_next_event_estimation;
     constexpr std::array kDenoisers{Word{.word = "svgf+", .value = Denoiser::kSvgfPlus},
                                     Word{.word = "svgf", .value = Denoiser::kSvgf},
+                                    Word{.word = "bmfr", .value = Denoiser::kBmfr},
                                     Word{.word = "none", .value = Denoiser::kNone}};
     constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},
                                    Word{.word = "aces", .value = ToneMap::kAces}};

@@ -82,7 +82,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--accumulate", settings.accumulate,
                  "While nothing moves, average frames without bias instead of denoising them")
         ->group("Rendering");
-    app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
+    app.add_option("--denoiser", text.denoiser, "svgf+, svgf, bmfr or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
                    "previous,isolated,cascade,source,denoise")

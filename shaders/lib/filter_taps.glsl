@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What SVGF's filters share: their inputs and the edge-stopping weights.
+// What filters over the source share: their inputs and SVGF's edge-stopping weights. The including kernel has `params`
+// with cameras, source_count, width, height, sigma_depth and normal_squarings as in FilterParams.
 // Follows: C. Schied et al. Spatiotemporal Variance-Guided Filtering. HPG 2017, section 4.4, equations 3 to 5.
 // Differs: the depth term compares with the plane through the centre pixel's neighbourhood by its depth gradient, made
 // from the normal instead of screen space derivatives, which a ray traced G-buffer does not have.
@@ -14,7 +15,6 @@ layout(set = 0, binding = kFilterDiffuse) uniform samplerBuffer diffuse_;
 layout(set = 0, binding = kFilterSpecular) uniform samplerBuffer specular_;
 layout(set = 0, binding = kFilterMoments) uniform samplerBuffer moments_;
 layout(set = 0, binding = kFilterLength) uniform samplerBuffer length_;
-layout(push_constant, scalar) uniform Push { FilterParams params; };
 
 float luminance(vec3 c) {
     return dot(c, vec3(0.2126, 0.7152, 0.0722));

@@ -80,7 +80,7 @@ TEST_F(SourceRendererTest, ACutForgetsAllHistory) {
         renderer.render(accumulating_header(camera, frame, 1));
     }
     FrameHeader header = accumulating_header(camera, 4, 1);
-    for (const Denoiser denoiser : {Denoiser::kNone, Denoiser::kSvgf, Denoiser::kSvgfPlus}) {
+    for (const Denoiser denoiser : {Denoiser::kNone, Denoiser::kSvgf, Denoiser::kSvgfPlus, Denoiser::kBmfr}) {
         header.settings.denoiser = denoiser;
         header.cut = true;
         const SourceFrame expected = fresh.render(header).download(kSourceSemantics);

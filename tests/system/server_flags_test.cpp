@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
 
+#include <array>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
@@ -119,6 +120,16 @@ TEST(Flags, ReportsAccessFilesThatCannotBeUsed) {
     EXPECT_THAT(read({"--scene", kFile, "--tokens", kFile}).problems, Contains(HasSubstr("CMakeLists.txt:2: ")));
     EXPECT_THAT(read({"--scene", kFile, "--tokens", "absent.txt"}).problems,
                 Contains(HasSubstr("absent.txt: cannot be read")));
+}
+
+TEST(Flags, KnowsEveryDenoiser) {
+    constexpr std::array kWords{std::pair("svgf+", Denoiser::kSvgfPlus), std::pair("svgf", Denoiser::kSvgf),
+                                std::pair("bmfr", Denoiser::kBmfr), std::pair("none", Denoiser::kNone)};
+    for (const auto& [word, denoiser] : kWords) {
+        const Invocation invocation = read({"--scene", kFile, "--denoiser", word});
+        EXPECT_TRUE(invocation.problems.empty()) << word;
+        EXPECT_EQ(invocation.config.settings.denoiser, denoiser) << word;
+    }
 }
 
 TEST(Flags, ReportsAllProblemsAtOnce) {

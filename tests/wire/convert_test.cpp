@@ -3,6 +3,7 @@
 
 #include "tests/wire/test_frames.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <gmock/gmock.h>
@@ -52,6 +53,21 @@ TEST(Convert, SourcesOfAFrameSurvive) {
     EXPECT_EQ(one->source_positions, FrameHeader{}.source_positions);
 }
 
+TEST(Convert, DenoisersKeepTheirNumbers) {
+    constexpr std::array kNumbers{std::pair(Denoiser::kNone, 1), std::pair(Denoiser::kSvgf, 2),
+                                  std::pair(Denoiser::kSvgfPlus, 3), std::pair(Denoiser::kBmfr, 4)};
+    for (const auto& [denoiser, number] : kNumbers) {
+        RenderSettings settings;
+        settings.denoiser = denoiser;
+        v1::RenderSettings message;
+        to_proto(settings, message);
+        EXPECT_EQ(static_cast<int>(message.denoiser()), number);
+        const auto back = from_proto(message);
+        ASSERT_TRUE(back) << back.error().message;
+        EXPECT_EQ(back->denoiser, denoiser);
+    }
+}
+
 struct HeaderDamage {
     const char* error;
     std::function<void(v1::FrameHeader&)> apply;
@@ -75,6 +91,7 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
         {"with guard band", [](auto& m) { m.mutable_guard_band()->set_top_px(16384); }},
         {"unknown denoiser", [](auto& m) { m.clear_settings(); }},
         {"unknown denoiser", [](auto& m) { m.mutable_settings()->set_denoiser(static_cast<v1::Denoiser>(77)); }},
+        {"unknown denoiser", [](auto& m) { m.mutable_settings()->set_denoiser(static_cast<v1::Denoiser>(5)); }},
         {"tone map", [](auto& m) { m.mutable_settings()->set_tone_map(v1::TONE_MAP_UNSPECIFIED); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(0); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(65537); }},

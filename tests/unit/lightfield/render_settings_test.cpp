@@ -19,14 +19,21 @@ TEST(HoleFilling, IsReadFromWords) {
 TEST(Presets, DifferInWhatTheyAreNamedFor) {
     const auto ours = find_preset("ours", 6, 6);
     const auto svgf = find_preset("svgf", 6, 6);
+    const auto bmfr = find_preset("bmfr", 6, 6);
     const auto reprojected = find_preset("reprojected", 6, 6);
-    ASSERT_TRUE(ours && svgf && reprojected);
+    ASSERT_TRUE(ours && svgf && bmfr && reprojected);
     EXPECT_EQ(ours->settings.holes, parse_hole_filling("all", 6, 6));
     EXPECT_TRUE(ours->has_guard_band);
     EXPECT_EQ(svgf->settings.holes, HoleFilling::path_traced());
     EXPECT_FALSE(svgf->has_guard_band);
     EXPECT_EQ(reprojected->settings.denoiser, Denoiser::kNone);
     EXPECT_EQ(ours->settings.indirect_clamp, svgf->settings.indirect_clamp); // the same input
+    EXPECT_EQ(bmfr->settings.denoiser, Denoiser::kBmfr);
+    EXPECT_EQ(bmfr->settings.max_bounces, 8U);
+    EXPECT_EQ(bmfr->settings.temporal_alpha, 0.2F);
+    RenderSettings other_denoiser = svgf->settings;
+    other_denoiser.denoiser = Denoiser::kBmfr;
+    EXPECT_TRUE(bmfr->settings == other_denoiser && bmfr->has_guard_band == svgf->has_guard_band);
     EXPECT_FALSE(find_preset("best", 6, 6));
 }
 
