@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = kSpecialiseBlend) const bool kHasBlend = false;
 layout(push_constant, scalar) uniform Push { ReprojectParams params; };
 
+#include "lib/reflection.glsl"
 #include "lib/reprojection.glsl"
 
 void discard_pixel(uint view, uvec2 at, uint reason) {
@@ -20,8 +21,19 @@ void discard_pixel(uint view, uvec2 at, uint reason) {
     atomicOr(params.holes.at[bit.word], bit.mask);
 }
 
+// Pixels whose specular light reflect_views.comp looks up anew.
+void list_if_glossy(uint pixel, Surface s, Bsdf b, vec3 direction) {
+    bool listed = false;
+    for (uint i = 0u; i < params.settings.source_count; ++i) {
+        listed = listed || is_glossy(s, b, -direction, params.cameras.at[i]);
+    }
+    if (listed) {
+        params.glossy_pixels.at[atomicAdd(params.counters.at[kCounterReflections], 1u)] = pixel;
+    }
+}
+
 // Radiance of a pixel that sees a surface; false: it has to be traced.
-bool reproject(uint view, Visibility seen, CameraRecord camera, vec2 position, out vec3 radiance) {
+bool reproject(uint view, uint pixel, Visibility seen, CameraRecord camera, vec2 position, out vec3 radiance) {
     vec3 direction = camera_direction(camera, position);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 at = intersect_plane(triangle, camera.origin, direction);
@@ -34,6 +46,9 @@ bool reproject(uint view, Visibility seen, CameraRecord camera, vec2 position, o
     }
     Bsdf b = make_bsdf(s, direction);
     radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
+    if ((params.flags & kFlagReflections) != 0u) {
+        list_if_glossy(pixel, s, b, direction);
+    }
     return true;
 }
 
@@ -50,7 +65,7 @@ void main() {
     if (seen.instance == kNoInstance) {
         radiance = environment_radiance(load_scene_info(), normalize(camera_direction(camera, position)));
         params.radiance.at[pixel] = pack_half3(radiance);
-    } else if (reproject(id.z, seen, camera, position, radiance)) {
+    } else if (reproject(id.z, pixel, seen, camera, position, radiance)) {
         params.radiance.at[pixel] = pack_half3(radiance);
     }
     if (kHasBlend && params.layers.at[pixel * 2u].instance != kNoInstance) {

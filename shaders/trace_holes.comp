@@ -12,6 +12,14 @@ layout(push_constant, scalar) uniform Push { HoleParams params; };
 #include "lib/holes.glsl"
 #include "lib/listed_path.glsl"
 
+bool ends_in_source() {
+    return (params.stages & kHolesEndInSource) != 0u;
+}
+
+CameraBuffer source_cameras() {
+    return params.frames.at[0].cameras;
+}
+
 void main() {
     uint item = linear_index();
     if (item >= params.counters.at[params.list]) {

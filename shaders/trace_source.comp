@@ -9,12 +9,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { TraceSourceParams params; };
 
-void add_samples(uint index, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
+void add_samples(uint index, uvec2 pixel, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
     SceneInfo info = load_scene_info();
     PathSettings settings = make_path_settings(params.path, params.max_indirect);
-    uint seed = hash_combine(params.seed, index);
+    bool is_shared = (params.path & kPathScreenSampler) != 0u;
+    uint seed = hash_combine(params.seed, is_shared ? gl_GlobalInvocationID.z : index);
     for (uint i = 0u; i < params.samples_per_pixel; ++i) {
-        Sampler rng = make_sampler(seed, params.first_sample + i);
+        uint number = params.first_sample + i;
+        Sampler rng = is_shared ? make_screen_sampler(seed, number, pixel) : make_sampler(seed, number);
         Illumination one = trace_path(info, settings, s, direction, cone_width, cone_spread, rng);
         if (is_finite(one.diffuse + one.specular)) {
             sum.diffuse += one.diffuse;
@@ -43,7 +45,7 @@ void main() {
         float cone_width = at.z / camera.focal_px;
         direction = normalize(direction);
         Surface s = make_surface(triangle, at.xy, direction, cone_width);
-        add_samples(index, s, direction, cone_width, 1.0 / camera.focal_px, sum);
+        add_samples(index, id.xy, s, direction, cone_width, 1.0 / camera.focal_px, sum);
     }
     float scale = 1.0 / float(params.samples_per_pixel);
     params.diffuse.at[index] = vec4(sum.diffuse * scale, 0.0);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/lightfield/presets.h"
 
+#include <sstream>
+
 namespace fieldcast {
 
-std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
+namespace {
+
+std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
     Preset preset;
     if (name == "ours") {
         preset.settings.holes.cascade_rows = rows;
@@ -13,6 +17,8 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
     preset.has_guard_band = false;
     preset.settings.holes = HoleFilling::path_traced();
     preset.settings.light_sampling = LightSampling::plain();
+    preset.settings.sampler = Sampler::kSobol;
+    preset.settings.reflections = false;
     if (name == "reprojected") {
         preset.settings.denoiser = Denoiser::kNone;
         preset.settings.temporal_accumulation = false;
@@ -29,8 +35,45 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
     return std::nullopt;
 }
 
+/// One thing about a preset made otherwise, to see what it is worth.
+bool change(Preset& preset, const std::string& word) {
+    RenderSettings& settings = preset.settings;
+    if (word == "sobol") {
+        settings.sampler = Sampler::kSobol;
+    } else if (word == "z-sobol") {
+        settings.sampler = Sampler::kZSobol;
+    } else if (word == "no-candidates") {
+        settings.light_sampling = LightSampling::plain();
+    } else if (word == "no-reflections") {
+        settings.reflections = false;
+    } else if (word == "no-guard-band") {
+        preset.has_guard_band = false;
+    } else if (word == "traced-holes") {
+        settings.holes = HoleFilling::path_traced();
+    } else {
+        return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
+    std::istringstream words(name);
+    std::string word;
+    std::getline(words, word, '/');
+    std::optional<Preset> preset = named_preset(word, rows, cols);
+    while (preset && std::getline(words, word, '/')) {
+        if (!change(*preset, word)) {
+            return std::nullopt;
+        }
+    }
+    return preset;
+}
+
 std::string preset_names() {
-    return "reprojected, svgf, bmfr, ours";
+    return "reprojected, svgf, bmfr, ours; changed by /sobol, /z-sobol, /no-candidates, /no-reflections, /no-guard-band, "
+           "/traced-holes";
 }
 
 } // namespace fieldcast

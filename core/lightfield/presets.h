@@ -14,10 +14,11 @@ struct Preset {
 
 /// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf", "bmfr": with those papers' parameters.
 /// These three without guard band and with path traced holes, as in the light field paper. "ours": the defaults, holes
-/// cascaded from the corners of a grid of `rows` × `cols`. Empty if there is no such preset.
+/// cascaded from the corners of a grid of `rows` × `cols`. Words after slashes change one thing each, as in
+/// "ours/sobol/no-reflections" (preset_names() lists them). Empty if there is no such preset.
 std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols);
 
-/// "a, b, c", for messages.
+/// The names and the changes, for messages.
 std::string preset_names();
 
 } // namespace fieldcast

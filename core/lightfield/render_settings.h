@@ -55,12 +55,18 @@ struct LightSampling {
     bool operator==(const LightSampling&) const = default;
 };
 
+/// Where the random numbers of the source's paths come from: Owen-scrambled Sobol points either way. kSobol: a sequence
+/// of its own for each pixel. kZSobol: one sequence, shifted from pixel to pixel along a Z-order curve, so that
+/// neighbours complement one another.
+enum class Sampler : std::uint8_t { kSobol, kZSobol };
+
 /// Every parameter that changes a pixel, on both sides of the wire. Travels in each frame header.
 struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
     LightSampling light_sampling;
+    Sampler sampler = Sampler::kZSobol;
     /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. Where little of the picture is lit, its
     /// light is far above the mean: 20 took a third of Sponza's indirect light (docs/benchmarks.md).
     float indirect_clamp = 100.0F;
@@ -72,6 +78,7 @@ struct RenderSettings {
     ToneMap tone_map = ToneMap::kClampSrgb;
     float exposure = 1.0F; ///< multiplies linear radiance before the tone map
     ReprojectionThresholds reprojection;
+    bool reflections = true; ///< smooth surfaces show each view what they mirror there; else their light sticks to them
     HoleFilling holes;
 
     bool operator==(const RenderSettings&) const = default;

@@ -18,7 +18,8 @@ inline std::uint32_t kernel_flags(const RenderSettings& settings) {
 inline std::uint32_t path_bits(const RenderSettings& settings) {
     return settings.max_bounces | settings.light_sampling.candidates << shared::kPathCandidatesShift |
            (settings.next_event_estimation ? shared::kPathNextEventEstimation : 0U) |
-           (settings.light_sampling.each_kind ? shared::kPathEachLightKind : 0U);
+           (settings.light_sampling.each_kind ? shared::kPathEachLightKind : 0U) |
+           (settings.sampler == Sampler::kZSobol ? shared::kPathScreenSampler : 0U);
 }
 
 /// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias.

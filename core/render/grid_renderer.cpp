@@ -2,9 +2,11 @@
 #include "core/render/grid_renderer.h"
 
 #include "core/render/camera_record.h"
+#include "core/render/corner_views.h"
 #include "core/render/frame_parameters.h"
 #include "core/render/hole_filler.h"
 #include "core/render/kernels.h"
+#include "core/render/reflections.h"
 #include "core/render/visibility_depth.h"
 
 #include <algorithm>
@@ -16,36 +18,6 @@ namespace {
 
 std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of lib/views.glsl
     return (request.width_px * request.height_px + 3U) & ~3U;
-}
-
-/// Index of `position` among `positions`, which gets it if it is not there.
-std::uint32_t index_of(std::vector<LatticePosition>& positions, LatticePosition position) {
-    const auto found = std::ranges::find(positions, position);
-    const auto index = static_cast<std::uint32_t>(found - positions.begin());
-    if (found == positions.end()) {
-        positions.push_back(position);
-    }
-    return index;
-}
-
-/// Indices of the views whose holes fill those of the others; positions that are missing are added.
-std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions) {
-    if (holes.cascade_rows == 0 || holes.cascade_cols == 0) {
-        return {};
-    }
-    ViewGrid grid;
-    grid.rows = holes.cascade_rows;
-    grid.cols = holes.cascade_cols;
-    std::vector<std::uint32_t> corners;
-    for (const std::uint32_t row : {0U, grid.rows - 1}) {
-        for (const std::uint32_t col : {0U, grid.cols - 1}) {
-            const std::uint32_t index = index_of(positions, lattice_position(grid, row, col));
-            if (std::ranges::find(corners, index) == corners.end()) {
-                corners.push_back(index);
-            }
-        }
-    }
-    return corners;
 }
 
 } // namespace
@@ -66,6 +38,7 @@ struct GridRenderer::State {
     void record_visibility();
     void record_interleave(const SourcePlanes& source);
     void record_reproject(const FrameHeader& header);
+    shared::TraceListParams list_params(const FrameHeader& header) const;
     void record_layers(const FrameHeader& header);
     HoleFiller::Batch make_batch(const FrameHeader& header, const ViewRequest& asked);
     ViewHistory& find_history();
@@ -87,6 +60,7 @@ struct GridRenderer::State {
     gpu::Kernel tone_map_kernel;
 
     HoleFiller filler;
+    Reflections reflections;
 
     ViewRequest request;    ///< with the corner views of the hole cascade
     std::size_t wanted = 0; ///< views that were asked for; they come first
@@ -126,7 +100,7 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
       layers_kernel(
           make_scene_kernel(d, s, KernelId::kCompositeLayers, sizeof(shared::TraceListParams), {&source_layout})),
       tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))),
-      filler(d, s, source_layout) {}
+      filler(d, s, source_layout), reflections(d, s, source_layout) {}
 
 ViewHistory& GridRenderer::State::find_history() {
     constexpr std::size_t kMaxHistories = 4;
@@ -182,6 +156,7 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
     radiance = gpu::Buffer(device, pixels * 8);
     layer_pixels = gpu::Buffer(device, scene.has_blend() ? pixels * 4 : 16);
     rgb8 = gpu::Buffer(device, pixels * 3);
+    reflections.resize(pixels);
 }
 
 void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
@@ -242,6 +217,8 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.radiance = radiance.address();
     params.holes = filler.map().address();
     params.layer_pixels = layer_pixels.address();
+    params.glossy_pixels = reflections.pixels().address();
+    params.flags = reflections.are_wanted(header) ? shared::kFlagReflections : 0;
     params.counters = counters.address();
     params.width = request.width_px;
     params.height = request.height_px;
@@ -253,14 +230,13 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     recorder.barrier();
 }
 
-// One compacted list over all views and one indirect dispatch.
-void GridRenderer::State::record_layers(const FrameHeader& header) {
+// For kernels that go through a compacted list over all views.
+shared::TraceListParams GridRenderer::State::list_params(const FrameHeader& header) const {
     shared::TraceListParams params{};
     params.cameras = cameras.address();
     params.visibility = visibility.address();
     params.layers = layers.address();
     params.radiance = radiance.address();
-    params.list = layer_pixels.address();
     params.counters = counters.address();
     params.views = views.address();
     params.width = request.width_px;
@@ -270,6 +246,12 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     params.max_indirect = max_indirect(header);
     params.layer_count = header.layer_count;
     params.settings = reproject_settings(header);
+    return params;
+}
+
+void GridRenderer::State::record_layers(const FrameHeader& header) {
+    shared::TraceListParams params = list_params(header);
+    params.list = layer_pixels.address();
     recorder.stage("layers");
     recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers}, {1, 1, 1});
     recorder.barrier();
@@ -335,6 +317,9 @@ Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& reques
     s.record_interleave(source);
     s.record_reproject(header);
     s.filler.fill(s.recorder, header, {s.visibility, s.views, s.counters, s.radiance, s.source_set}, header.render_times);
+    if (s.reflections.are_wanted(header)) {
+        s.reflections.record(s.recorder, s.list_params(header), s.counters, s.source_set);
+    }
     if (s.scene.has_blend()) {
         s.record_layers(header);
     }

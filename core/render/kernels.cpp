@@ -13,6 +13,8 @@
 #include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/pack_source.spv.h"
+#include "shaders/reflect_views_bvh.spv.h"
+#include "shaders/reflect_views_rayquery.spv.h"
 #include "shaders/reproject.spv.h"
 #include "shaders/scan_holes.spv.h"
 #include "shaders/shade_holes.spv.h"
@@ -84,6 +86,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return traced("trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv);
     case KernelId::kCompositeLayers:
         return traced("composite_layers", composite_layers_bvh_spv, composite_layers_rayquery_spv);
+    case KernelId::kReflectViews:
+        return traced("reflect_views", reflect_views_bvh_spv, reflect_views_rayquery_spv);
     case KernelId::kTraceReference:
         return traced("trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv);
     case KernelId::kTraceSource:

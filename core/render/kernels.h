@@ -18,6 +18,7 @@ enum class KernelId {
     kLimitHistory,
     kListHoles,
     kPackSource,
+    kReflectViews,
     kReproject,
     kScanHoles,
     kShadeHoles,

@@ -55,6 +55,13 @@ template <class T> TexelArray make_texels(const gpu::Device& device, const std::
     return array;
 }
 
+bool uses_glossy(const Scene& scene) {
+    return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+        const Material& material = scene.materials[scene.meshes[instance.mesh].material];
+        return material.roughness_factor < shared::kGlossyRoughness || material.metallic_roughness.texture != kNone;
+    });
+}
+
 bool uses_blend(const Scene& scene) {
     return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
         return scene.materials[scene.meshes[instance.mesh].material].alpha_mode == AlphaMode::kBlend;
@@ -67,7 +74,8 @@ struct GpuScene::State {
     State(const gpu::Device& d, const Scene& s, Traversal t)
         : device(d), scene(s), traversal(t), pose(pose_scene(s, 0)), textures(d, s),
           records(make_scene_records(s, pose, textures)), lights(make_light_tables(s, pose, records.radius_m)),
-          acceleration(d, s, pose, t), layout(d, scene_bindings(t)), bindings(d, layout), has_blend(uses_blend(s)) {}
+          acceleration(d, s, pose, t), layout(d, scene_bindings(t)), bindings(d, layout), has_blend(uses_blend(s)),
+          has_glossy(uses_glossy(s)) {}
 
     void upload_static();
     void upload_lights();
@@ -86,6 +94,7 @@ struct GpuScene::State {
     gpu::BindingLayout layout;
     gpu::BindingSet bindings;
     bool has_blend;
+    bool has_glossy;
     gpu::Texture environment;
     std::array<TexelArray, 16> arrays; ///< by binding
 };
@@ -186,6 +195,9 @@ const gpu::BindingSet& GpuScene::bindings() const {
 }
 bool GpuScene::has_blend() const {
     return state_->has_blend;
+}
+bool GpuScene::has_glossy() const {
+    return state_->has_glossy;
 }
 
 std::vector<gpu::Specialisation> GpuScene::specialisations() const {

@@ -37,7 +37,8 @@ public:
     Traversal traversal() const;
     const gpu::BindingLayout& layout() const;
     const gpu::BindingSet& bindings() const;
-    bool has_blend() const; ///< some material is BLEND
+    bool has_blend() const;  ///< some material is BLEND
+    bool has_glossy() const; ///< some surface may be smoother than kGlossyRoughness
     /// For every kernel that includes lib/scene_data.glsl.
     std::vector<gpu::Specialisation> specialisations() const;
     std::uint64_t device_bytes() const; ///< of all buffers and textures

@@ -132,6 +132,8 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     message.mutable_light_sampling()->set_each_kind(settings.light_sampling.each_kind);
     to_proto(settings.holes, *message.mutable_holes());
     message.set_accumulate(settings.accumulate);
+    message.set_reflections(settings.reflections);
+    message.set_sampler(settings.sampler == Sampler::kZSobol ? v1::SAMPLER_Z_SOBOL : v1::SAMPLER_SOBOL);
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
@@ -168,6 +170,11 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     }
     settings.holes = *holes;
     settings.accumulate = message.accumulate();
+    settings.reflections = message.reflections();
+    if (message.sampler() > v1::SAMPLER_Z_SOBOL || message.sampler() < 0) {
+        return decode_error("settings.sampler: unknown sampler " + std::to_string(message.sampler()));
+    }
+    settings.sampler = message.sampler() == v1::SAMPLER_Z_SOBOL ? Sampler::kZSobol : Sampler::kSobol;
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }

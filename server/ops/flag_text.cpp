@@ -189,6 +189,8 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
                                     Word{.word = "none", .value = Denoiser::kNone}};
     constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},
                                    Word{.word = "aces", .value = ToneMap::kAces}};
+    constexpr std::array kSamplers{Word{.word = "z-sobol", .value = Sampler::kZSobol},
+                                   Word{.word = "sobol", .value = Sampler::kSobol}};
     constexpr std::array kClocks{Word{.word = "real", .value = ClockMode::kReal},
                                  Word{.word = "frames", .value = ClockMode::kFrames}};
     constexpr std::array kLevels{
@@ -196,6 +198,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
     read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
     read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);
+    read_word("--sampler", text.sampler, kSamplers, config.settings.sampler, problems);
     read_word("--clock", text.clock, kClocks, config.clock, problems);
     read_word("--log-level", text.log_level, kLevels, config.log_level, problems);
 }

@@ -21,6 +21,7 @@ struct FlagText {
     bool lacks_next_event_estimation = false;
     std::string denoiser = "svgf+";
     std::string holes = "all";
+    std::string sampler = "z-sobol";
     std::string exposure = "auto";
     std::string tone_map = "srgb";
     std::string guard_band = "auto";

@@ -82,7 +82,14 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--accumulate", settings.accumulate,
                  "While nothing moves, average frames without bias instead of denoising them")
         ->group("Rendering");
+    app.add_option("--sampler", text.sampler,
+                   "Random numbers: z-sobol (neighbouring pixels complement one another) or sobol (each on its own)")
+        ->group("Rendering")
+        ->capture_default_str();
     app.add_option("--denoiser", text.denoiser, "svgf+, svgf, bmfr or none")->group("Rendering")->capture_default_str();
+    app.add_flag("!--no-reflections", settings.reflections,
+                 "Light of smooth surfaces sticks to them in all views, as if they were rough")
+        ->group("Rendering");
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
                    "previous,isolated,cascade,source,denoise")

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Unidirectional path tracing with next event estimation from a surface that is already known.
 // MIS: E. Veach, L. Guibas. Optimally Combining Sampling Techniques for Monte Carlo Rendering. 1995 (power heuristic).
-// Ray offsets: C. Wächter, N. Binder. A Fast and Robust Method for Avoiding Self-Intersection. Ray Tracing Gems, 2019.
 #ifndef FIELDCAST_LIB_PATH
 #define FIELDCAST_LIB_PATH
 #include "lib/lights.glsl"
+#include "lib/ray_origin.glsl"
 #include "lib/traversal.glsl"
 #ifdef PATH_ENDS_IN_SOURCE
 #include "lib/source_light.glsl"
+bool ends_in_source();         // whether paths end on surfaces that the sources show: the including kernel's
+CameraBuffer source_cameras();
 #endif
 
 struct PathSettings {
@@ -30,15 +32,6 @@ struct Illumination {
     vec3 specular;
 };
 
-vec3 offset_origin(vec3 p, vec3 normal) {
-    ivec3 steps = ivec3(256.0 * normal);
-    vec3 moved = intBitsToFloat(floatBitsToInt(p) + ivec3(p.x < 0.0 ? -steps.x : steps.x, p.y < 0.0 ? -steps.y : steps.y,
-                                                          p.z < 0.0 ? -steps.z : steps.z));
-    vec3 near_zero = p + normal * (1.0 / 65536.0);
-    return vec3(abs(p.x) < 1.0 / 32.0 ? near_zero.x : moved.x, abs(p.y) < 1.0 / 32.0 ? near_zero.y : moved.y,
-                abs(p.z) < 1.0 / 32.0 ? near_zero.z : moved.z);
-}
-
 float power_heuristic(float a, float b) { // a > 0; squares of densities themselves may overflow
     float ratio = b / a;
     return 1.0 / (1.0 + ratio * ratio);
@@ -47,11 +40,6 @@ float power_heuristic(float a, float b) { // a > 0; squares of densities themsel
 // Directions must lie on the same side of the shading and the geometric normal.
 bool is_consistent(Surface s, vec3 direction, float local_z) {
     return dot(s.geometric_normal, direction) * local_z > 0.0;
-}
-
-vec3 path_origin(Surface s, vec3 direction) {
-    bool above = dot(s.geometric_normal, direction) > 0.0;
-    return offset_origin(s.position, above ? s.geometric_normal : -s.geometric_normal);
 }
 
 // Kinds of light that one sample of next event estimation stands for: part [from, to) of sample_light's `choice`.
@@ -214,8 +202,8 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
             arriving = emitted_light(info, settings, each_kind, s, direction, hit.t, value.pdf);
             b = make_bsdf(s, direction);
 #ifdef PATH_ENDS_IN_SOURCE
-            vec3 reflected;
-            ends = light_in_source(s, hit.instance, b, direction, hit.t, reflected);
+            vec3 reflected = vec3(0.0);
+            ends = ends_in_source() && light_in_source(source_cameras(), s, hit.instance, b, reflected);
             arriving += reflected;
 #endif
         }

@@ -23,8 +23,9 @@ float unit_float(uint bits) {
 
 // One path's supply of random numbers.
 struct Sampler {
-    uint seed;      // of this pixel
+    uint seed;      // of this pixel, or of all pixels
     uint index;     // sample number in the sequence
+    uint place;     // of the pixel along a Z-order curve; kNoPlace: the seed is this pixel's own
     uint dimension; // counts pairs
     uint state;     // PCG, for dimensions beyond the Sobol ones
 };
@@ -32,10 +33,33 @@ struct Sampler {
 const uint kSobolPairs = 16u;
 const uint kSobolIndexMask = 0xFFFu; // sequences of 4096 points; longer ones start over with another seed
 
-Sampler make_sampler(uint seed, uint index) {
+const uint kNoPlace = 0xFFFFFFFFu;
+
+uint epoch_seed(uint seed, uint index) {
     uint epoch = index & ~kSobolIndexMask;
-    uint mixed = epoch == 0u ? seed : hash_combine(seed, epoch);
-    return Sampler(mixed, index & kSobolIndexMask, 0u, hash_combine(mixed, index));
+    return epoch == 0u ? seed : hash_combine(seed, epoch);
+}
+
+Sampler make_sampler(uint seed, uint index) {
+    uint mixed = epoch_seed(seed, index);
+    return Sampler(mixed, index & kSobolIndexMask, kNoPlace, 0u, hash_combine(mixed, index));
+}
+
+uint spread_bits(uint value) { // of 16 bits, to the even ones
+    value = (value | (value << 8)) & 0x00FF00FFu;
+    value = (value | (value << 4)) & 0x0F0F0F0Fu;
+    value = (value | (value << 2)) & 0x33333333u;
+    return (value | (value << 1)) & 0x55555555u;
+}
+
+// One sequence for all pixels, shifted in each by a point of another sequence that follows a Z-order curve across the
+// image: successive samples of a pixel and those of neighbouring pixels both fill the unit square evenly, so that what is
+// averaged over frames or neighbours has less noise. After: A. Ahmed, P. Wonka. Screen-Space Blue-Noise Diffusion of Monte
+// Carlo Sampling Error via Hierarchical Ordering of Pixels. ACM TOG 39(6), 2020. Differs: the curve only shifts.
+Sampler make_screen_sampler(uint seed, uint index, uvec2 pixel) {
+    uint mixed = epoch_seed(seed, index);
+    uint place = spread_bits(pixel.x) | (spread_bits(pixel.y) << 1);
+    return Sampler(mixed, index & kSobolIndexMask, place, 0u, hash_combine(hash_combine(mixed, place), index));
 }
 
 uint scramble_reversed(uint value, uint seed) {
@@ -68,6 +92,14 @@ float next_float(inout Sampler rng) {
     return unit_float((word >> 22u) ^ word);
 }
 
+// Owen-scrambled Sobol point. Scrambling permutes the bits of the index in `mask`, block by aligned block: pairs become
+// independent, and any 2^k samples that start at a multiple of 2^k stay well distributed in two dimensions.
+uvec2 sobol_pair(uint index, uint mask, uint seed) {
+    index = owen_scramble(index, seed) & mask;
+    return uvec2(owen_scramble(bitfieldReverse(index), pcg_hash(seed)),
+                 owen_scramble(sobol_second(index), pcg_hash(seed ^ 0xB5297A4Du)));
+}
+
 vec2 next_pair(inout Sampler rng) {
     uint dimension = rng.dimension++;
     if (dimension >= kSobolPairs) {
@@ -75,12 +107,11 @@ vec2 next_pair(inout Sampler rng) {
         return vec2(first, next_float(rng));
     }
     uint seed = hash_combine(rng.seed, dimension);
-    // Owen scrambling permutes the low 12 bits of the index, block by aligned block: pairs become independent, and any
-    // 2^k samples that start at a multiple of 2^k stay well distributed in two dimensions.
-    uint index = owen_scramble(rng.index, seed) & kSobolIndexMask;
-    uint x = owen_scramble(bitfieldReverse(index), pcg_hash(seed));
-    uint y = owen_scramble(sobol_second(index), pcg_hash(seed ^ 0xB5297A4Du));
-    return vec2(unit_float(x), unit_float(y));
+    uvec2 point = sobol_pair(rng.index, kSobolIndexMask, seed);
+    if (rng.place != kNoPlace) {
+        point ^= sobol_pair(rng.place, 0xFFFFFFFFu, pcg_hash(seed ^ 0x68E31DA4u));
+    }
+    return vec2(unit_float(point.x), unit_float(point.y));
 }
 
 #endif

@@ -50,11 +50,13 @@ const uint kMaxSources = 8; // as core/lightfield/source_frame.h
 const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
 const uint kFlagKeepTaps = 8;
+const uint kFlagReflections = 16;
 
 // How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
 const uint kPathCandidatesShift = 16;
 const uint kPathNextEventEstimation = 1u << 24;
 const uint kPathEachLightKind = 1u << 25;
+const uint kPathScreenSampler = 1u << 26;
 
 // trace_source.comp: path traces every pixel of the sources, every page.
 struct TraceSourceParams {
@@ -208,6 +210,7 @@ const uint kCounterInvalidSamples = 20;
 const uint kCounterLayerPaths = 21;     // BLEND surfaces that had to be path traced
 const uint kCounterRememberedHoles = 22; // filled from the frame before
 const uint kCounterIsolatedHoles = 23;  // filled from around their place in the source
+const uint kCounterReflections = 24;    // pixels of smooth surfaces
 const uint kCounterDiscards = 32;       // 4 per view
 const uint kDiscardFrustum = 0;
 const uint kDiscardId = 1;
@@ -230,10 +233,12 @@ struct ReprojectParams {
     Uvec2Buffer radiance;        // out: linear radiance, half floats
     UintBuffer holes;            // in/out: the map of shared/holes.h
     UintBuffer layer_pixels;     // out
+    UintBuffer glossy_pixels;    // out, with kFlagReflections
     UintBuffer counters;
     uint width;
     uint height;
     uint view_count;
+    uint flags;                  // kFlagReflections: lists pixels for reflect_views.comp
     ReprojectSettings settings;
 };
 const uint kReprojectGeometry = 0;     // RGBA32UI GeometryTexel
@@ -245,7 +250,8 @@ struct FinishListParams {
     uint list;                   // kCounter… of its length
 };
 
-// composite_layers.comp: the pixels behind BLEND surfaces. Reads set 1: kReproject….
+// composite_layers.comp: the pixels behind BLEND surfaces; reflect_views.comp: those of smooth surfaces. Read set 1:
+// kReproject….
 struct TraceListParams {
     CameraBuffer cameras;        // kMaxSources, then the views
     VisibilityBuffer visibility;

@@ -93,6 +93,8 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
         {"unknown denoiser", [](auto& m) { m.mutable_settings()->set_denoiser(static_cast<v1::Denoiser>(77)); }},
         {"unknown denoiser", [](auto& m) { m.mutable_settings()->set_denoiser(static_cast<v1::Denoiser>(5)); }},
         {"tone map", [](auto& m) { m.mutable_settings()->set_tone_map(v1::TONE_MAP_UNSPECIFIED); }},
+        {"settings.sampler", [](auto& m) { m.mutable_settings()->set_sampler(static_cast<v1::Sampler>(3)); }},
+        {"settings.sampler", [](auto& m) { m.mutable_settings()->set_sampler(static_cast<v1::Sampler>(-1)); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(0); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(65537); }},
         {"max_bounces", [](auto& m) { m.mutable_settings()->set_max_bounces(257); }},

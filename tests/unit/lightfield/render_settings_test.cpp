@@ -37,5 +37,21 @@ TEST(Presets, DifferInWhatTheyAreNamedFor) {
     EXPECT_FALSE(find_preset("best", 6, 6));
 }
 
+TEST(Presets, AreChangedByWords) {
+    const auto changed = find_preset("ours/sobol/no-reflections", 6, 6);
+    ASSERT_TRUE(changed);
+    RenderSettings expected = find_preset("ours", 6, 6)->settings;
+    EXPECT_EQ(expected.sampler, Sampler::kZSobol);
+    EXPECT_TRUE(expected.reflections);
+    expected.sampler = Sampler::kSobol;
+    expected.reflections = false;
+    EXPECT_TRUE(changed->settings == expected && changed->has_guard_band);
+    EXPECT_FALSE(find_preset("ours/no-guard-band", 6, 6)->has_guard_band);
+    EXPECT_EQ(find_preset("ours/traced-holes", 6, 6)->settings.holes, HoleFilling::path_traced());
+    EXPECT_EQ(find_preset("ours/no-candidates", 6, 6)->settings.light_sampling, LightSampling::plain());
+    EXPECT_EQ(find_preset("svgf/z-sobol", 6, 6)->settings.sampler, Sampler::kZSobol);
+    EXPECT_FALSE(find_preset("ours/better", 6, 6));
+}
+
 } // namespace
 } // namespace fieldcast
