@@ -90,7 +90,7 @@ void main() {
         specular.rgb *= limiting_scale(luminance(specular.rgb), own.z, moments.z, around.squares.y * scale);
     }
     // Of one frame, and of the mean of so many: 1/n, and α/(2 − α) once the weights no longer fall.
-    vec2 variance = max(vec2(0.0), moments.yw - moments.xz * moments.xz);
+    vec2 variance = max(vec2(0.0), moments.yw - (is_young ? moments.xz * moments.xz : around.squares * scale));
     variance *= max(1.0 / frames, params.alpha / (2.0 - params.alpha));
     params.diffuse.at[pixel] = vec4(diffuse.rgb, variance.x);
     params.specular.at[pixel] = vec4(specular.rgb, variance.y);

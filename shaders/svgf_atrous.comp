@@ -95,10 +95,12 @@ void main() {
         ivec2 at = c.at + offset;
         if (tap != ivec2(0) && is_inside(at)) {
             int texel = tap_texel(c, at);
-            float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, texelFetch(geometry_, texel));
+            uvec4 other = texelFetch(geometry_, texel);
+            float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, other);
             if (weight > 1e-4) {
                 add_tap(d, texelFetch(diffuse_, texel), weight);
-                add_tap(s, texelFetch(specular_, texel), weight);
+                float alike = params.follows_lobes != 0u ? lobe_similarity(c, offset, other) : 1.0;
+                add_tap(s, texelFetch(specular_, texel), weight * alike);
             }
         }
     }

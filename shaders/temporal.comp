@@ -7,6 +7,7 @@
 #include "lib/bsdf.glsl"
 #include "lib/camera.glsl"
 #include "lib/linear_index.glsl"
+#include "lib/lobe.glsl"
 #include "lib/pages.glsl"
 
 layout(local_size_x = kLinearGroup) in;
@@ -40,22 +41,29 @@ struct Past {
     uint id;
     float plane_limit_m;
     float tangential_limit_m;
+    float mirror_turn; // angle between where it mirrors the camera now and then, radians
 };
 
-void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, uint bit, inout History sum) {
+// Texel of a pixel of the frame before that shows the past surface; −1: it does not. `slack`: of the distance along it.
+int past_texel(CameraRecord camera, uint page, ivec2 at, Past past, float slack) {
     ivec2 size = ivec2(params.width, params.height);
-    if (weight <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) {
-        return;
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) {
+        return -1;
     }
     int texel = (int(page) * size.y + at.y) * size.x + at.x;
     uvec4 geometry = texelFetch(previous_geometry_, texel);
     if (geometry.z != past.id) {
-        return;
+        return -1;
     }
     vec3 offset = camera.origin + camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x) - past.position;
     bool same = abs(dot(offset, past.geometric_normal)) <= past.plane_limit_m &&
-                length(offset) <= past.tangential_limit_m && dot(unpack_normal(geometry.y), past.normal) >= 0.5;
-    if (same) {
+                length(offset) <= past.tangential_limit_m * slack && dot(unpack_normal(geometry.y), past.normal) >= 0.5;
+    return same ? texel : -1;
+}
+
+void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, uint bit, inout History sum) {
+    int texel = weight > 0.0 ? past_texel(camera, page, at, past, 1.0) : -1;
+    if (texel >= 0) {
         sum.diffuse += weight * texelFetch(previous_diffuse_, texel).rgb;
         sum.specular += weight * texelFetch(previous_specular_, texel).rgb;
         sum.moments += weight * texelFetch(previous_moments_, texel);
@@ -63,6 +71,35 @@ void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, u
         sum.weight += weight;
         sum.accepted |= 1u << bit;
     }
+}
+
+// Catmull-Rom weights of four pixels in a row, `f` beyond the second.
+vec4 catmull_rom(float f) {
+    return vec4(f * (-0.5 + f * (1.0 - 0.5 * f)), 1.0 + f * f * (1.5 * f - 2.5), f * (0.5 + f * (2.0 - 1.5 * f)),
+                f * f * (0.5 * f - 0.5));
+}
+
+// Illumination from 4×4 pixels where all of them show the past surface. Bilinear weights frame after frame blur what moves
+// across the image; these hardly do.
+void sharpen(CameraRecord camera, uint page, vec2 p, Past past, inout History sum) {
+    vec2 corner = floor(p - 0.5);
+    vec2 f = p - 0.5 - corner;
+    ivec2 first = ivec2(corner) - 1;
+    vec4 column = catmull_rom(f.x);
+    vec4 row = catmull_rom(f.y);
+    vec3 diffuse = vec3(0.0);
+    vec3 specular = vec3(0.0);
+    for (int i = 0; i < 16; ++i) {
+        int texel = past_texel(camera, page, first + ivec2(i & 3, i >> 2), past, 2.0);
+        if (texel < 0) {
+            return;
+        }
+        float weight = column[i & 3] * row[i >> 2];
+        diffuse += weight * texelFetch(previous_diffuse_, texel).rgb;
+        specular += weight * texelFetch(previous_specular_, texel).rgb;
+    }
+    sum.diffuse = max(diffuse, vec3(0.0)) * sum.weight;
+    sum.specular = max(specular, vec3(0.0)) * sum.weight;
 }
 
 History gather_history(CameraRecord camera, uint page, vec2 p, Past past) {
@@ -80,11 +117,14 @@ History gather_history(CameraRecord camera, uint page, vec2 p, Past past) {
         ivec2 at = nearest + ivec2(i % 3 - 1, i / 3 - 1);
         gather(camera, page, at, 1.0, past, uint(i) + 4u, sum);
     }
+    if ((params.flags & kFlagSharpHistory) != 0u && (sum.accepted & 15u) == 15u) {
+        sharpen(camera, page, p, past, sum);
+    }
     return sum;
 }
 
 // The pixel's surface point, moved back by its instance's motion.
-Past past_surface(Visibility seen, CameraRecord now, CameraRecord before, vec2 position) {
+Past past_surface(Visibility seen, CameraRecord now, CameraRecord before, vec2 position, vec3 normal) {
     vec3 direction = camera_direction(now, position);
     WorldTriangle t = load_world_triangle(seen.instance, seen.primitive);
     vec3 at = intersect_plane(t, now.origin, direction);
@@ -105,6 +145,13 @@ Past past_surface(Visibility seen, CameraRecord now, CameraRecord before, vec2 p
     past.plane_limit_m = 1.5 * footprint + 1e-4 * depth;
     past.tangential_limit_m = 2.5 * footprint / max(0.1, abs(dot(view, past.geometric_normal)));
     past.id = (seen.instance << 12) | t.material;
+    past.normal = normal;
+    vec3 area_normal_now = cross(t.edge1, t.edge2);
+    vec3 turned = past.geometric_normal - area_normal_now / max(length(area_normal_now), 1e-30);
+    turned *= dot(area_normal_now, normal) < 0.0 ? -1.0 : 1.0;
+    vec3 mirrored = reflect(normalize(direction), normal);
+    vec3 mirrored_then = reflect(view, normalize(normal + turned));
+    past.mirror_turn = length(mirrored - mirrored_then); // small: chord for arc
     return past;
 }
 
@@ -142,9 +189,8 @@ void main() {
     uint source = source_of_page(at.page, params.source_count);
     CameraRecord now = params.cameras.at[source];
     CameraRecord before = params.cameras.at[params.source_count + source];
-    Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5);
     uvec4 geometry = texelFetch(geometry_, int(index));
-    past.normal = unpack_normal(geometry.y);
+    Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5, unpack_normal(geometry.y));
     vec3 p = camera_project(before, past.position);
     History history = gather_history(before, at.page, p.xy, past);
     if (!(p.z > 0.0) || history.weight < 0.01) {
@@ -159,6 +205,15 @@ void main() {
     vec3 here = now.origin + camera_direction(now, vec2(at.x, at.y) + 0.5) * uintBitsToFloat(geometry.x);
     bool moves = length(past.position - here) > kMotionFootprints * uintBitsToFloat(geometry.x) / now.focal_px;
     float alpha = max(moves ? params.moments_alpha : params.alpha, 1.0 / frames);
-    store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
-          mix(history.moments * scale, moments, max(params.moments_alpha, 1.0 / frames)), frames);
+    // What a smooth surface mirrored is no longer there once its lobe has turned.
+    float stays = 1.0;
+    if ((params.flags & kFlagFollowLobes) != 0u) {
+        float roughness = float(geometry.w & 255u) / 255.0;
+        stays = exp(-past.mirror_turn * past.mirror_turn * lobe_falloff(roughness, 1.0 / now.focal_px));
+    }
+    float moments_alpha = max(params.moments_alpha, 1.0 / frames);
+    vec4 fresh = vec4(moments_alpha, moments_alpha, vec2(1.0 - (1.0 - moments_alpha) * stays));
+    store(index, mix(history.diffuse * scale, diffuse, alpha),
+          mix(history.specular * scale, specular, 1.0 - (1.0 - alpha) * stays),
+          mix(history.moments * scale, moments, fresh), frames);
 }

@@ -67,9 +67,13 @@ public:
     void resize(std::uint32_t texel_count); ///< pixels of all pages
     std::uint32_t texel_count() const { return texel_count_; }
 
-    /// The new frame's share of the average is at least `share` · least_weight. `keeps_taps`: fills `taps()`.
+    /// The new frame's share of the average is at least `share` · least_weight. `is_sharp`: the history is interpolated
+    /// with Catmull-Rom weights where it can be. `follows_lobes`: specular light counts as old once the lobe that the
+    /// surface reflects to the camera has turned. `keeps_taps`: fills `taps()`.
     struct Options {
         float share = 1.0F;
+        bool is_sharp = false;
+        bool follows_lobes = false;
         bool keeps_taps = false;
     };
     void record(gpu::Recorder& recorder, const FilterFrame& frame, const Options& options);

@@ -17,6 +17,7 @@ struct Tuning {
     std::uint32_t normal_squarings = 7; // 128
     int outer_radius = 2;               // taps of the levels after the first
     float slow_share = 1.0F;            // of α: least weight of a frame in illumination
+    bool follows_lobes = false;
     bool limits_outliers = false;       // in the last level: earlier, sparse light would be lost
     bool feeds_back = true;             // the first level's result replaces the history
 };
@@ -27,6 +28,7 @@ constexpr Tuning kSvgfPlus{.sigma_luminance = 1.5F,
                            .normal_squarings = 5,
                            .outer_radius = 1,
                            .slow_share = 1.0F / 6.0F,
+                           .follows_lobes = true,
                            .limits_outliers = true,
                            .feeds_back = false};
 
@@ -43,7 +45,8 @@ Svgf::Svgf(const gpu::Device& device, const Accumulation& accumulation)
       atrous_(make_plain_kernel(device, KernelId::kSvgfAtrous, sizeof(shared::FilterParams), {&layout_})) {}
 
 Accumulation::Options Svgf::accumulation_options(Denoiser denoiser) {
-    return {.share = tuning_of(denoiser).slow_share};
+    const bool is_plus = denoiser == Denoiser::kSvgfPlus;
+    return {.share = tuning_of(denoiser).slow_share, .is_sharp = is_plus, .follows_lobes = is_plus};
 }
 
 void Svgf::resize() {
@@ -85,6 +88,7 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     params.sigma_luminance = tuning.sigma_luminance;
     params.sigma_depth = tuning.sigma_depth;
     params.normal_squarings = tuning.normal_squarings;
+    params.follows_lobes = tuning.follows_lobes ? 1 : 0;
     params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
     const gpu::GroupCount groups = linear_groups(texel_count_);
     recorder.stage("denoise");

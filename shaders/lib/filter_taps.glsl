@@ -7,6 +7,7 @@
 #ifndef FIELDCAST_LIB_FILTER_TAPS
 #define FIELDCAST_LIB_FILTER_TAPS
 #include "lib/camera.glsl"
+#include "lib/lobe.glsl"
 #include "lib/packing.glsl"
 #include "lib/pages.glsl"
 
@@ -27,6 +28,8 @@ struct Centre {
     vec2 depth_gradient; // per pixel
     vec3 normal;
     uint id;
+    float lobe_falloff;  // of specular weights, per squared angle; 0: like diffuse ones
+    float pixel_angle;   // between neighbouring pixels' rays
 };
 
 // Depth of a plane through the surface point changes across the image by this much per pixel.
@@ -45,8 +48,18 @@ Centre load_centre(uint index, uvec4 geometry) {
     c.depth = uintBitsToFloat(geometry.x);
     c.normal = unpack_normal(geometry.y);
     c.id = geometry.z;
-    c.depth_gradient = depth_gradient(params.cameras.at[source_of_page(pixel.page, params.source_count)], c.at, c.depth, c.normal);
+    CameraRecord camera = params.cameras.at[source_of_page(pixel.page, params.source_count)];
+    c.depth_gradient = depth_gradient(camera, c.at, c.depth, c.normal);
+    c.pixel_angle = 1.0 / camera.focal_px;
+    c.lobe_falloff = lobe_falloff(float(geometry.w & 255u) / 255.0, c.pixel_angle);
     return c;
+}
+
+// How alike two pixels see the lobes that their surfaces reflect: a mirror's turns twice as far as its normal.
+float lobe_similarity(Centre c, ivec2 offset, uvec4 geometry) {
+    float turned = 8.0 * max(0.0, 1.0 - dot(c.normal, unpack_normal(geometry.y)));
+    float apart = dot(vec2(offset), vec2(offset)) * c.pixel_angle * c.pixel_angle;
+    return exp(-(turned + apart) * c.lobe_falloff);
 }
 
 // Weight of a tap from geometry alone; 0 for other instances, materials and sky.

@@ -4,14 +4,10 @@
 #ifndef FIELDCAST_LIB_REFLECTION
 #define FIELDCAST_LIB_REFLECTION
 #include "lib/bsdf.glsl"
+#include "lib/lobe.glsl"
 #include "lib/reprojection.glsl"
 
 const float kMirrorRoughness = 0.08; // up to this, half of the lobe fits into a pixel of common sizes
-
-// Half angle of the cone that holds 75 % of what GGX reflects at normal incidence: atan(√3 α).
-float lobe_angle(float roughness) {
-    return atan(1.7320508 * roughness * roughness);
-}
 
 // How far the lobe has turned from a source to the viewer, as a share of 1: at 0 the surface's light looks the same from
 // both, at 1 only what lies in its reflection says what it looks like.

@@ -51,6 +51,8 @@ const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
 const uint kFlagKeepTaps = 8;
 const uint kFlagReflections = 16;
+const uint kFlagSharpHistory = 32;
+const uint kFlagFollowLobes = 64;
 
 // How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
 const uint kPathCandidatesShift = 16;
@@ -162,6 +164,7 @@ struct FilterParams {
     float sigma_depth;
     uint normal_squarings; // σ of the normals is 2 to this power
     int radius;            // svgf_atrous.comp: taps on each side, 1 or 2
+    uint follows_lobes;    // specular light is shared only between pixels that mirror about the same
     uint limits_outliers;  // svgf_atrous.comp: no pixel stays brighter than all around it on its surface
     float alpha;           // limit_history.comp: least weight of a frame in the illumination
 };
