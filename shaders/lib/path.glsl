@@ -61,7 +61,7 @@ LightShare share_of_kind(SceneInfo info, uint kind) {
 // shifted copies of one another in `u` (the R2 sequence), which leaves the mean what it is. To the power heuristic they
 // are so many samples.
 LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
-                           inout Sampler rng, out BsdfValue value) {
+                           inout float pick, out BsdfValue value) {
     const vec2 kShift = vec2(0.7548776662, 0.5698402910);
     float span = share.to - share.from;
     LightSample kept = LightSample(s.normal, 0.0, vec3(0.0), 1.0);
@@ -71,7 +71,7 @@ LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, 
     for (uint i = 0u; i < candidates; ++i) {
         float stratum = (float(i) + choice) / float(candidates);
         LightSample light = sample_light(info, s.position, s.normal, share.from + span * stratum,
-                                         fract(u + float(i) * kShift));
+                                         u);
         vec3 local = light.direction * b.world_from_local;
         BsdfValue reflected = eval_bsdf(b, local);
         // The albedo's floor: filters spread the demodulated light of dark texels to bright ones.
@@ -84,7 +84,11 @@ LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, 
         light.weight *= mis * span;
         mass *= mis * span;
         total += mass;
-        if (total == mass || next_float(rng) * total < mass) {
+        float share_of_new = mass / total;
+        bool is_new = pick < share_of_new;
+        // What is left of the random number after the choice is uniform again.
+        pick = min(is_new ? pick / share_of_new : (pick - share_of_new) / (1.0 - share_of_new), 0.99999994);
+        if (is_new) {
             kept = light;
             kept_mass = mass;
             value = reflected;
@@ -96,8 +100,8 @@ LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, 
 
 // Light of one next event estimation sample, without the surface's reflection; zero if it is blocked.
 vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
-                   inout Sampler rng, out BsdfValue value) {
-    LightSample light = resample_light(info, s, b, share, candidates, choice, u, rng, value);
+                   inout float pick, out BsdfValue value) {
+    LightSample light = resample_light(info, s, b, share, candidates, choice, u, pick, value);
     if (luminance(light.weight) <= 0.0) {
         return vec3(0.0);
     }
@@ -153,6 +157,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         vec2 choices = next_pair(rng);
         vec2 light_u = next_pair(rng);
         vec2 bsdf_u = next_pair(rng);
+        vec2 picks = next_pair(rng); // of the candidate, of going on
         if (settings.next_event_estimation) {
             for (uint kind = 0u; kind < (each_kind ? 3u : 1u); ++kind) {
                 LightShare share = each_kind ? share_of_kind(info, kind) : LightShare(0.0, 1.0);
@@ -160,7 +165,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
                     continue;
                 }
                 BsdfValue value;
-                vec3 light = sample_direct(info, s, b, share, settings.light_candidates, choices.x, light_u, rng, value);
+                vec3 light = sample_direct(info, s, b, share, settings.light_candidates, choices.x, light_u, picks.x, value);
                 if (bounce == 0u) {
                     result.diffuse += light * value.diffuse;
                     result.specular += light * value.specular / modulation;
@@ -183,7 +188,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         }
         if (bounce >= 3u) { // Russian roulette
             float survival = clamp(max(throughput.r, max(throughput.g, throughput.b)), 0.05, 0.95);
-            if (next_float(rng) >= survival) {
+            if (picks.y >= survival) {
                 break;
             }
             throughput /= survival;

@@ -234,5 +234,80 @@ TEST_F(SourceRendererTest, AveragesFramesWhileNothingMoves) {
     EXPECT_EQ(s.source.render(header).header().still_frames, 0U);
 }
 
+/// Means of 4×4 pixels.
+std::vector<glm::vec3> block_means(const std::vector<glm::vec3>& pixels, std::uint32_t width, std::uint32_t height) {
+    std::vector<glm::vec3> means;
+    for (std::uint32_t y = 0; y + 4 <= height; y += 4) {
+        for (std::uint32_t x = 0; x + 4 <= width; x += 4) {
+            glm::vec3 sum(0.0F);
+            for (std::uint32_t i = 0; i < 16; ++i) {
+                sum += pixels[std::size_t{y + i / 4} * width + x + i % 4];
+            }
+            means.push_back(sum / 16.0F);
+        }
+    }
+    return means;
+}
+
+/// A floor under a wide lamp with something in between: direct light only, with soft shadows.
+scene::Scene floor_under_a_lamp() {
+    SceneBuilder builder;
+    builder.add(rectangle({0, 0, 0}, {3, 0, 0}, {0, 0, -3}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    builder.add(box({0, 1, 0}, glm::vec3(0.3F)), builder.add_material(diffuse(glm::vec3(0.5F))));
+    builder.add(rectangle({0, 2, 0}, {1, 0, 0}, {0, 0, 1}), builder.add_material(emitter(glm::vec3(4.0F))));
+    return builder.scene();
+}
+
+TEST_F(SourceRendererTest, NeighboursComplementOneAnother) {
+    const scene::Scene scene = floor_under_a_lamp();
+    const scene::GpuScene gpu_scene(device(), scene, traversal());
+    SourceRenderer renderer(device(), gpu_scene);
+    const Camera camera = look_at({0, 1.5F, 3}, {0, 0, 0}, 0.7F, 64, 64);
+    const auto light = [&](Sampler sampler, std::uint32_t seed) {
+        FrameHeader header = plain_header(camera, 1);
+        header.settings.max_bounces = 1;
+        header.settings.sampler = sampler;
+        header.seed = seed;
+        return diffuse_light(renderer.render(header));
+    };
+    const auto variances = [&](Sampler sampler) { // of pixels, and of blocks of them
+        double pixels = 0.0;
+        double blocks = 0.0;
+        for (std::uint32_t run = 0; run < 4; ++run) {
+            const auto a = light(sampler, 2 * run + 1);
+            const auto b = light(sampler, 2 * run + 2);
+            pixels += variance_between(a, b);
+            blocks += variance_between(block_means(a, 64, 64), block_means(b, 64, 64));
+        }
+        return std::pair(pixels, blocks);
+    };
+    const auto alone = variances(Sampler::kSobol);
+    const auto together = variances(Sampler::kZSobol);
+    RecordProperty("alone", std::to_string(alone.second / alone.first));
+    RecordProperty("together", std::to_string(together.second / together.first));
+    EXPECT_NEAR(together.first / alone.first, 1.0, 0.15); // each pixel by itself is as noisy
+    EXPECT_NEAR(alone.second / alone.first, 1.0 / 16.0, 0.02);
+    EXPECT_LT(together.second, 0.6 * alone.second);
+}
+
+TEST_F(SourceRendererTest, SamplersAgreeInTheMean) {
+    const scene::Scene scene = area_lit_room();
+    const scene::GpuScene gpu_scene(device(), scene, traversal());
+    SourceRenderer renderer(device(), gpu_scene);
+    const auto mean = [&](Sampler sampler) {
+        FrameHeader header = plain_header(room_camera(kWidth, kHeight), 512);
+        header.settings.sampler = sampler;
+        glm::dvec3 sum(0.0);
+        for (const glm::vec3& pixel : diffuse_light(renderer.render(header))) {
+            sum += glm::dvec3(pixel);
+        }
+        return sum;
+    };
+    const glm::dvec3 ratio = mean(Sampler::kZSobol) / mean(Sampler::kSobol);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(ratio[c], 1.0, 0.005); // 786,432 samples each: a standard error of 0.1 %
+    }
+}
+
 } // namespace
 } // namespace fieldcast::render

@@ -129,6 +129,67 @@ TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
     EXPECT_LT(left, 0.2);
 }
 
+/// A smooth metal ball that turns in a sky of light and dark squares.
+scene::Scene turning_ball() {
+    SceneBuilder builder;
+    scene::Environment& sky = builder.environment();
+    sky.width_px = 64;
+    sky.height_px = 32;
+    for (std::uint32_t i = 0; i < 64 * 32; ++i) {
+        const bool is_light = (i / 8) % 2 == (i / 64 / 8) % 2;
+        sky.pixels.push_back(is_light ? glm::vec3(1.0F) : glm::vec3(0.02F));
+    }
+    builder.add(sphere(0.8F, 96, Shading::kSmooth), builder.add_material(metal(glm::vec3(0.9F), 0.12F)));
+    scene::Scene scene = builder.scene();
+    scene.nodes.back().is_animated = true;
+    scene::AnimationChannel channel;
+    channel.node = static_cast<std::uint32_t>(scene.nodes.size() - 1);
+    channel.path = scene::AnimationPath::kRotation;
+    channel.times_s = {0.0F, 1.0F};
+    channel.values = {glm::vec4(0, 0, 0, 1), glm::vec4(0, 1, 0, 0)}; // half a turn about y
+    scene.channels.push_back(channel);
+    scene.duration_s = 1.0;
+    return scene;
+}
+
+using MovingSurfacesTest = RenderTest;
+
+// What a turning ball mirrors stands still; only its surface moves. Error of its reflection after 16 frames.
+TEST_F(MovingSurfacesTest, ReflectionsDoNotTurnWithThem) {
+    scene::Scene scene = turning_ball();
+    scene::GpuScene gpu_scene(device(), scene, traversal());
+    const Camera camera = look_at({0, 0, 2.6F}, {0, 0, 0}, 0.8F, kSize, kSize);
+    const std::array wanted{PlaneSemantic::kSpecular};
+    SourceRenderer exact(device(), gpu_scene);
+    gpu_scene.pose(0, true);
+    const auto truth = image::unpack_plane(exact.render(plain_header(camera, 1024)).download(wanted).planes.front());
+    const auto error = [&](Denoiser denoiser) {
+        SourceRenderer renderer(device(), gpu_scene);
+        std::vector<glm::vec3> light;
+        for (std::uint32_t frame = 0; frame < 16; ++frame) {
+            FrameHeader header = plain_header(camera, 1);
+            header.frame_id = header.noise_frame = frame;
+            header.cut = frame == 0;
+            header.scene_time_ns = frame * 20'000'000LL;
+            header.settings.denoiser = denoiser;
+            header.settings.temporal_accumulation = true;
+            gpu_scene.pose(header.scene_time_ns, header.cut);
+            light = image::unpack_plane(renderer.render(header).download(wanted).planes.front());
+        }
+        double sum = 0.0;
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            const double difference = static_cast<double>(light[i].y) - static_cast<double>(truth[i].y);
+            sum += difference * difference;
+        }
+        return std::sqrt(sum / static_cast<double>(light.size()));
+    };
+    const double plain = error(Denoiser::kSvgf);
+    const double following = error(Denoiser::kSvgfPlus);
+    RecordProperty("svgf", std::to_string(plain));
+    RecordProperty("svgf_plus", std::to_string(following));
+    EXPECT_LT(following, 0.6 * plain);
+}
+
 INSTANTIATE_TEST_SUITE_P(Denoisers, SvgfTest, testing::Values(Denoiser::kSvgf, Denoiser::kSvgfPlus),
                          [](const auto& test) { return test.param == Denoiser::kSvgf ? "Svgf" : "SvgfPlus"; });
 
