@@ -23,7 +23,7 @@ struct Tuning {
 };
 
 constexpr Tuning kSvgf{};
-constexpr Tuning kSvgfPlus{.sigma_luminance = 1.5F,
+constexpr Tuning kSvgfPlus{.sigma_luminance = 2.0F,
                            .sigma_depth = 1.0F,
                            .normal_squarings = 5,
                            .outer_radius = 1,

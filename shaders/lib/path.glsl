@@ -57,12 +57,11 @@ LightShare share_of_kind(SceneInfo info, uint kind) {
 
 // A light sample chosen from `candidates` by what it would reflect if nothing blocked it, weighted against the BSDF's
 // sampling; its weight is light without the surface's reflection, zero if no candidate reflects.
-// Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice` and
-// shifted copies of one another in `u` (the R2 sequence), which leaves the mean what it is. To the power heuristic they
-// are so many samples.
+// Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice`, have
+// the same `u`, and `pick` decides between them: the sample stays well distributed if those are. To the power heuristic
+// they are so many samples.
 LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
                            inout float pick, out BsdfValue value) {
-    const vec2 kShift = vec2(0.7548776662, 0.5698402910);
     float span = share.to - share.from;
     LightSample kept = LightSample(s.normal, 0.0, vec3(0.0), 1.0);
     value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
