@@ -5,9 +5,10 @@ namespace fieldcast {
 
 std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
     Preset preset;
-    if (name == "ours") {
+    if (name == "ours" || name == "red") {
         preset.settings.holes.cascade_rows = rows;
         preset.settings.holes.cascade_cols = cols;
+        preset.settings.route = name == "red" ? Route::kRed : Route::kGreen;
         return preset;
     }
     preset.has_guard_band = false;
@@ -18,15 +19,17 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
         preset.settings.temporal_accumulation = false;
         return preset;
     }
-    if (name == "svgf") {
+    if (name == "svgf" || name == "paper" || name == "paper-red") {
         preset.settings.denoiser = Denoiser::kSvgf;
+        preset.settings.accumulate_views = name == "paper";
+        preset.settings.route = name == "paper-red" ? Route::kRed : Route::kGreen;
         return preset;
     }
     return std::nullopt;
 }
 
 std::string preset_names() {
-    return "reprojected, svgf, ours";
+    return "reprojected, svgf, paper, paper-red, ours, red";
 }
 
 } // namespace fieldcast

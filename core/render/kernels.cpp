@@ -8,12 +8,14 @@
 #include "shaders/filter_holes.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
+#include "shaders/keep_holes.spv.h"
 #include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/pack_source.spv.h"
 #include "shaders/reproject.spv.h"
 #include "shaders/scan_holes.spv.h"
 #include "shaders/shade_holes.spv.h"
+#include "shaders/shade_views.spv.h"
 #include "shaders/source_surfaces.spv.h"
 #include "shaders/start_holes.spv.h"
 #include "shaders/svgf_atrous.spv.h"
@@ -46,6 +48,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return {"count_holes", count_holes_spv};
     case KernelId::kFilterHoles:
         return {"filter_holes", filter_holes_spv};
+    case KernelId::kKeepHoles:
+        return {"keep_holes", keep_holes_spv};
     case KernelId::kLimitHistory:
         return {"limit_history", limit_history_spv};
     case KernelId::kListHoles:
@@ -54,6 +58,8 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
         return {"scan_holes", scan_holes_spv};
     case KernelId::kShadeHoles:
         return {"shade_holes", shade_holes_spv};
+    case KernelId::kShadeViews:
+        return {"shade_views", shade_views_spv};
     case KernelId::kStartHoles:
         return {"start_holes", start_holes_spv};
     case KernelId::kFinishList:
