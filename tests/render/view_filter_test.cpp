@@ -225,6 +225,25 @@ TEST_F(ViewFilterTest, AveragesOfStillFramesAreTheSameByBothRoutes) {
     }
 }
 
+TEST_F(ViewFilterTest, WhoHoldsTheSceneMakesTheSameViews) {
+    Stage server = stage(area_lit_room());
+    Stage client = stage(area_lit_room());
+    SourcePlanes received(device());
+    for (std::uint32_t frame = 0; frame < 3; ++frame) {
+        const FrameHeader header = red_header(frame, Denoiser::kSvgfPlus);
+        server.gpu_scene.pose(0, header.cut);
+        client.gpu_scene.pose(0, header.cut);
+        const SourcePlanes& planes = server.source.render(header);
+        received.resize(planes.header());
+        ASSERT_TRUE(received.upload(planes.download(kSourceSemantics)));
+        const Views ours = server.grid.render(planes, grid_of(header));
+        const Views theirs = client.grid.render(received, grid_of(header));
+        for (std::size_t view = 0; view < ours.views.size(); ++view) {
+            EXPECT_EQ(ours.views[view].image, theirs.views[view].image) << frame << ' ' << view;
+        }
+    }
+}
+
 TEST_F(ViewFilterTest, LightOfLayersIsDenoisedInTheSource) {
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(0.4F);
