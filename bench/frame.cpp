@@ -8,6 +8,7 @@
 #include "bench/provenance.h"
 #include "core/base/error.h"
 #include "core/image/image_file.h"
+#include "core/lightfield/presets.h"
 
 #include <cmath>
 #include <filesystem>
@@ -34,9 +35,28 @@ struct FrameOptions {
     double spacing_m = 0.0;
     double exposure = 0.0;
     bool guard_band = true;
-    std::string holes = "all";
-    RenderSettings settings;
+    std::string preset = "ours";
+    std::string holes; ///< empty: the preset's
+    RenderSettings settings; ///< samples, bounces and next event estimation count
 };
+
+/// The preset with what was asked for besides. Throws UserError.
+Preset chosen_preset(const FrameOptions& options, const ViewGrid& grid, float exposure) {
+    std::optional<Preset> preset = find_preset(options.preset, grid.rows, grid.cols);
+    if (!preset) {
+        throw UserError("--preset " + options.preset + ": expected one of " + preset_names());
+    }
+    RenderSettings& settings = preset->settings;
+    settings.samples_per_pixel = options.settings.samples_per_pixel;
+    settings.max_bounces = options.settings.max_bounces;
+    settings.next_event_estimation = options.settings.next_event_estimation;
+    settings.exposure = exposure;
+    if (!options.holes.empty()) {
+        settings.holes = parse_holes(options.holes, grid);
+    }
+    preset->has_guard_band = preset->has_guard_band && options.guard_band;
+    return *preset;
+}
 
 /// What one frame took and did.
 struct FrameSample {
@@ -112,6 +132,7 @@ nlohmann::ordered_json summarise(const gpu::Device& device, const FrameOptions& 
     json["frames"] = samples.size();
     json["grid"] = options.grid;
     json["size"] = options.size;
+    json["preset"] = options.preset;
     for (const StageTime& time : samples.front().stages) {
         json["stages_ms"][time.stage] = of([&](const FrameSample& s) { return stage_ms(s, time.stage); });
     }
@@ -175,10 +196,9 @@ void run_frame(const FrameOptions& options) {
     const BenchmarkScene known = find_benchmark_scene(options.scene);
     LightFieldScene scene(device, {known.file, options.environment, options.grid, options.spacing_m, options.traversal,
                                    parse_size("--size", options.size)});
-    RenderSettings settings = options.settings;
-    settings.holes = parse_holes(options.holes, scene.grid());
-    settings.exposure = options.exposure > 0.0 ? static_cast<float>(options.exposure) : known.exposure;
-    LightFieldRun run(device, scene, settings, options.guard_band);
+    const Preset preset = chosen_preset(
+        options, scene.grid(), options.exposure > 0.0 ? static_cast<float>(options.exposure) : known.exposure);
+    LightFieldRun run(device, scene, preset.settings, preset.has_guard_band);
     std::cout << device.info().name << ", " << device.info().driver << '\n'
               << known.title << ", " << options.grid << " views of " << options.size << '\n';
     print_guard_band(run.guard_band());
@@ -220,17 +240,10 @@ void add_frame_command(CLI::App& app) {
     command->add_option("--bounces", options->settings.max_bounces)->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("!--no-nee", options->settings.next_event_estimation, "without next event estimation");
     command->add_flag("!--no-guard-band", options->guard_band, "source without guard band, as in the paper");
-    command->add_option("--denoiser", options->settings.denoiser, "svgf+, svgf, bmfr or none")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Denoiser>{{"svgf+", Denoiser::kSvgfPlus},
-                                                                            {"svgf", Denoiser::kSvgf},
-                                                                            {"bmfr", Denoiser::kBmfr},
-                                                                            {"none", Denoiser::kNone}},
-                                            CLI::ignore_case))
-        ->default_str("svgf+");
-    command
-        ->add_option("--holes", options->holes,
-                     "all, none (path traced), or a list of previous,isolated,cascade,source,denoise")
-        ->capture_default_str();
+    command->add_option("--preset", options->preset, "how views are made: " + preset_names())->capture_default_str();
+    command->add_option("--holes", options->holes,
+                        "instead of the preset's: all, none (path traced), or a list of "
+                        "previous,isolated,cascade,source,denoise");
     command->add_option("--device", options->device, "part of the Vulkan device's name");
     command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
     command->add_option("--json", options->json, "write the results to this file");

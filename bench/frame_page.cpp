@@ -92,7 +92,7 @@ std::string kind_of_stage(const std::string& stage) {
     if (contains("temporal") || contains("denoise") || contains("svgf") || contains("bmfr") || stage == "pack") {
         return "accumulate, denoise";
     }
-    if (contains("reproject") || stage == "interleave") {
+    if (contains("reproject") || stage == "interleave" || stage == "shade_views") {
         return "reprojection";
     }
     return stage == "layers" ? "layers" : "rest";

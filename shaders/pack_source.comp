@@ -10,8 +10,9 @@ layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { PackParams params; };
 
 void main() {
-    uint pixel = linear_index();
-    if (pixel < params.pixel_count) {
+    uint item = linear_index();
+    if (item < params.pixel_count) {
+        uint pixel = params.first_pixel + item;
         params.diffuse.at[pixel] = pack_r11g11b10(params.diffuse_in.at[pixel].rgb);
         params.specular.at[pixel] = pack_r11g11b10(params.specular_in.at[pixel].rgb);
     }

@@ -1,9 +1,10 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Reprojects the sources' illumination into every pixel of every view and remodulates it with the view's own material.
-// What cannot be reused becomes a hole. Sky and emission are exact.
+// Reprojects the sources' illumination into every pixel of every view and remodulates it with the view's own material, or
+// keeps it for filters. What cannot be reused becomes a hole. Sky and emission are exact.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/geometry_texel.glsl"
 #include "lib/hole_map.glsl"
 #include "lib/lights.glsl"
 #include "lib/views.glsl"
@@ -32,24 +33,33 @@ void list_if_glossy(uint pixel, Surface s, Bsdf b, vec3 direction) {
     }
 }
 
-// Radiance of a pixel that sees a surface; false: it has to be traced.
-bool reproject(uint view, uint pixel, Visibility seen, CameraRecord camera, vec2 position, out vec3 radiance) {
-    vec3 direction = camera_direction(camera, position);
+void keep_light(uint texel, uvec4 geometry, vec3 diffuse, vec3 specular) {
+    params.light.geometry.at[texel] = geometry;
+    params.light.diffuse.at[texel] = vec4(diffuse, 0.0);
+    params.light.specular.at[texel] = vec4(specular, 0.0);
+}
+
+// A pixel that sees a surface.
+void reproject(uint view, Visibility seen, CameraRecord camera, uvec2 at_pixel, uint pixel, uint texel) {
+    vec3 direction = camera_direction(camera, vec2(at_pixel) + 0.5);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 at = intersect_plane(triangle, camera.origin, direction);
     direction = normalize(direction);
     Surface s = make_surface(triangle, at.xy, direction, at.z / camera.focal_px);
     Reused light = gather_sources(params.cameras, 0u, s, seen.instance, direction, at.z / camera.focal_px, at.z);
     if (!light.found) {
-        discard_pixel(view, uvec2(position), light.reason);
-        return false;
+        discard_pixel(view, at_pixel, light.reason);
     }
-    Bsdf b = make_bsdf(s, direction);
-    radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
-    if ((params.flags & kFlagReflections) != 0u) {
-        list_if_glossy(pixel, s, b, direction);
+    if ((params.flags & kFlagKeepLight) != 0u) {
+        keep_light(texel, geometry_texel(s, seen.instance, at.z), light.diffuse, light.specular);
+    } else if (light.found) {
+        Bsdf b = make_bsdf(s, direction);
+        vec3 radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
+        params.radiance.at[pixel] = pack_half3(radiance);
+        if ((params.flags & kFlagReflections) != 0u) {
+            list_if_glossy(pixel, s, b, direction);
+        }
     }
-    return true;
 }
 
 void main() {
@@ -58,15 +68,17 @@ void main() {
         return;
     }
     uint pixel = id.z * view_stride(params.width, params.height) + id.y * params.width + id.x;
+    uint texel = (id.z * params.height + id.y) * params.width + id.x;
     CameraRecord camera = params.cameras.at[kMaxSources + id.z];
-    vec2 position = vec2(id.xy) + 0.5;
     Visibility seen = params.visibility.at[pixel];
-    vec3 radiance;
     if (seen.instance == kNoInstance) {
-        radiance = environment_radiance(load_scene_info(), normalize(camera_direction(camera, position)));
-        params.radiance.at[pixel] = pack_half3(radiance);
-    } else if (reproject(id.z, pixel, seen, camera, position, radiance)) {
-        params.radiance.at[pixel] = pack_half3(radiance);
+        vec3 direction = normalize(camera_direction(camera, vec2(id.xy) + 0.5));
+        params.radiance.at[pixel] = pack_half3(environment_radiance(load_scene_info(), direction));
+        if ((params.flags & kFlagKeepLight) != 0u) {
+            keep_light(texel, kNoSurface, vec3(0.0), vec3(0.0));
+        }
+    } else {
+        reproject(id.z, seen, camera, id.xy, pixel, texel);
     }
     if (kHasBlend && params.layers.at[pixel * 2u].instance != kNoInstance) {
         uint slot = atomicAdd(params.counters.at[kCounterLayers], 1u);

@@ -3,19 +3,19 @@
 // G-buffer planes of the sources, every page, in wire precision, from its visibility.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
+#include "lib/geometry_texel.glsl"
 #include "lib/linear_index.glsl"
 #include "lib/pages.glsl"
-#include "lib/surface.glsl"
 
 layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { SourceSurfacesParams params; };
 
-void store(uint pixel, float depth, uint normal, uint id, uint material) {
-    params.depth.at[pixel] = depth;
-    params.normal.at[pixel] = normal;
-    params.id.at[pixel] = id;
-    params.material.at[pixel] = material;
-    params.geometry.at[pixel] = uvec4(floatBitsToUint(depth), normal, id, material);
+void store(uint pixel, uvec4 texel) {
+    params.depth.at[pixel] = uintBitsToFloat(texel.x);
+    params.normal.at[pixel] = texel.y;
+    params.id.at[pixel] = texel.z;
+    params.material.at[pixel] = texel.w;
+    params.geometry.at[pixel] = texel;
 }
 
 void main() {
@@ -27,7 +27,7 @@ void main() {
     Visibility seen = page_visibility(params.visibility, params.layers, at.page, params.source_count,
                                       view_stride(params.width, params.height), at.pixel);
     if (seen.instance == kNoInstance) {
-        store(index, uintBitsToFloat(0x7F800000u), 0u, kNoIndex, 0u);
+        store(index, kNoSurface);
         return;
     }
     CameraRecord camera = params.cameras.at[source_of_page(at.page, params.source_count)];
@@ -35,7 +35,5 @@ void main() {
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 meets = intersect_plane(triangle, camera.origin, direction);
     Surface s = make_surface(triangle, meets.xy, normalize(direction), meets.z / camera.focal_px);
-    uint material = uint(s.roughness * 255.0 + 0.5) | (uint(s.metallic * 255.0 + 0.5) << 8);
-    store(index, dot(s.position - camera.origin, camera.forward), pack_normal(s.normal),
-          (seen.instance << 12) | s.material, material);
+    store(index, geometry_texel(s, seen.instance, dot(s.position - camera.origin, camera.forward)));
 }

@@ -41,6 +41,7 @@ struct DeviceInfo {
     float timestamp_period_ns = 1.0F;
     std::uint32_t timestamp_bits = 64;
     std::uint32_t max_texel_buffer_elements = 0;
+    std::uint64_t memory_bytes = 0; ///< of the largest heap that is the device's own
     std::uint32_t max_image_side = 0;
     std::uint32_t max_image_layers = 0;
     std::uint32_t subgroup_size = 0;

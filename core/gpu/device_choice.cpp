@@ -24,6 +24,17 @@ void append_hex(std::string& text, std::span<const std::uint8_t> bytes) {
     }
 }
 
+std::uint64_t largest_heap(VkPhysicalDevice physical) {
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    std::uint64_t bytes = 0;
+    for (const VkMemoryHeap& heap : std::span(memory.memoryHeaps, memory.memoryHeapCount)) {
+        const bool is_own = (heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0;
+        bytes = std::max(bytes, is_own ? std::uint64_t{heap.size} : 0);
+    }
+    return bytes;
+}
+
 /// Graphics, too, because mip maps are made with vkCmdBlitImage.
 std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice physical) {
     std::uint32_t count = 0;
@@ -155,6 +166,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t queue_family) {
     info.timestamp_period_ns = properties.limits.timestampPeriod;
     info.timestamp_bits = families[queue_family].timestampValidBits;
     info.max_texel_buffer_elements = properties.limits.maxTexelBufferElements;
+    info.memory_bytes = largest_heap(physical);
     info.max_image_side = properties.limits.maxImageDimension2D;
     info.max_image_layers = properties.limits.maxImageArrayLayers;
     info.subgroup_size = v11.subgroupSize;

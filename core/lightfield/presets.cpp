@@ -9,9 +9,10 @@ namespace {
 
 std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
     Preset preset;
-    if (name == "ours") {
+    if (name == "ours" || name == "red") {
         preset.settings.holes.cascade_rows = rows;
         preset.settings.holes.cascade_cols = cols;
+        preset.settings.route = name == "red" ? Route::kRed : Route::kGreen;
         return preset;
     }
     preset.has_guard_band = false;
@@ -24,8 +25,10 @@ std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, 
         preset.settings.temporal_accumulation = false;
         return preset;
     }
-    if (name == "svgf") {
+    if (name == "svgf" || name == "paper" || name == "paper-red") {
         preset.settings.denoiser = Denoiser::kSvgf;
+        preset.settings.accumulate_views = name == "paper";
+        preset.settings.route = name == "paper-red" ? Route::kRed : Route::kGreen;
         return preset;
     }
     if (name == "bmfr") {
@@ -72,8 +75,8 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
 }
 
 std::string preset_names() {
-    return "reprojected, svgf, bmfr, ours; changed by /sobol, /z-sobol, /no-candidates, /no-reflections, /no-guard-band, "
-           "/traced-holes";
+    return "reprojected, svgf, bmfr, paper, paper-red, ours, red; changed by /sobol, /z-sobol, /no-candidates, "
+           "/no-reflections, /no-guard-band, /traced-holes";
 }
 
 } // namespace fieldcast

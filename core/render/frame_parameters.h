@@ -22,11 +22,25 @@ inline std::uint32_t path_bits(const RenderSettings& settings) {
            (settings.sampler == Sampler::kZSobol ? shared::kPathScreenSampler : 0U);
 }
 
-/// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias.
+/// The red route: views are denoised, not the source. An average of still frames needs no denoiser.
+inline bool denoises_views(const FrameHeader& header) {
+    return header.settings.route == Route::kRed && header.still_frames == 0;
+}
+/// Views are averaged over time or denoised themselves.
+inline bool filters_views(const FrameHeader& header) {
+    return denoises_views(header) || (header.settings.accumulate_views && header.still_frames == 0);
+}
+
+/// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias; views that
+/// are averaged or denoised as a whole do that to their holes.
 inline HoleFilling hole_filling(const FrameHeader& header) {
-    HoleFilling averaged = HoleFilling::path_traced();
-    averaged.previous_frame = true;
-    return header.still_frames > 0 ? averaged : header.settings.holes;
+    HoleFilling holes = header.settings.holes;
+    if (header.still_frames > 0) {
+        holes = HoleFilling::path_traced();
+    }
+    holes.previous_frame = header.still_frames > 0 || (holes.previous_frame && !filters_views(header));
+    holes.denoise = holes.denoise && !denoises_views(header);
+    return holes;
 }
 
 /// Least weight of a new frame in an average; 0: all frames weigh the same.

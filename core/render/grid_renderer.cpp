@@ -7,9 +7,9 @@
 #include "core/render/hole_filler.h"
 #include "core/render/kernels.h"
 #include "core/render/reflections.h"
+#include "core/render/view_history.h"
 #include "core/render/visibility_depth.h"
 
-#include <algorithm>
 #include <glm/gtc/packing.hpp>
 
 namespace fieldcast::render {
@@ -22,14 +22,6 @@ std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of li
 
 } // namespace
 
-/// Holes of one set of views over frames. A channel has few such sets; those not used for longest are forgotten.
-struct ViewHistory {
-    ViewRequest request; ///< with the corner views
-    std::uint64_t pose_count = 0;
-    std::uint64_t last_use = 0;
-    HoleHistory holes;
-};
-
 struct GridRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s);
 
@@ -38,10 +30,15 @@ struct GridRenderer::State {
     void record_visibility();
     void record_interleave(const SourcePlanes& source);
     void record_reproject(const FrameHeader& header);
+    /// Filters over views know nothing of rays that were looked up for one view.
+    bool wants_reflections(const FrameHeader& header) const {
+        return filter == nullptr && reflections.are_wanted(header);
+    }
     shared::TraceListParams list_params(const FrameHeader& header) const;
+    void record_holes(FrameHeader& header);
     void record_layers(const FrameHeader& header);
     HoleFiller::Batch make_batch(const FrameHeader& header, const ViewRequest& asked);
-    ViewHistory& find_history();
+    void begin_filter(const FrameHeader& header);
     void record_tone_map(const FrameHeader& header);
     Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
     DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
@@ -64,8 +61,8 @@ struct GridRenderer::State {
 
     ViewRequest request;    ///< with the corner views of the hole cascade
     std::size_t wanted = 0; ///< views that were asked for; they come first
-    std::vector<std::unique_ptr<ViewHistory>> histories;
-    std::uint64_t use_count = 0;
+    ViewHistories histories;
+    ViewFilter* filter = nullptr; ///< of this frame's views; null: they are not filtered
     HoleCounts hole_counts;
     std::vector<Camera> view_cameras;
     std::uint32_t source_texels = 0; ///< of all pages
@@ -100,35 +97,24 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
       layers_kernel(
           make_scene_kernel(d, s, KernelId::kCompositeLayers, sizeof(shared::TraceListParams), {&source_layout})),
       tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))),
-      filler(d, s, source_layout), reflections(d, s, source_layout) {}
-
-ViewHistory& GridRenderer::State::find_history() {
-    constexpr std::size_t kMaxHistories = 4;
-    auto found = std::ranges::find_if(histories, [&](const auto& history) { return history->request == request; });
-    if (found == histories.end()) {
-        if (histories.size() == kMaxHistories) {
-            histories.erase(std::ranges::min_element(histories, {}, [](const auto& h) { return h->last_use; }));
-        }
-        histories.push_back(std::make_unique<ViewHistory>());
-        found = histories.end() - 1;
-        (*found)->request = request;
-    }
-    (*found)->last_use = ++use_count;
-    return **found;
-}
+      filler(d, s, source_layout), reflections(d, s, source_layout), histories(d, s) {}
 
 HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, const ViewRequest& asked) {
+    wanted = asked.positions.size();
     ViewRequest next = asked;
     HoleFiller::Batch batch{.width = asked.width_px, .height = asked.height_px};
     batch.corners = choose_corners(hole_filling(header), next.positions);
     batch.view_count = static_cast<std::uint32_t>(next.positions.size());
+    if (ViewFilter::is_wanted(header)) {
+        ViewFilter::check(device, header.settings, next);
+    }
     request = std::move(next);
-    ViewHistory& history = find_history();
+    HistoryOfHoles& history = histories.holes(request);
     batch.history = &history.holes;
-    batch.has_history = !header.cut && header.still_frames != 1 && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
+    batch.has_history = !header.cut && header.still_frames != 1 && history.pose_count > 0 &&
+                        history.pose_count + 1 == scene.pose_count();
     history.holes.current = 1 - history.holes.current;
     history.pose_count = scene.pose_count();
-    wanted = asked.positions.size();
     return batch;
 }
 
@@ -180,6 +166,13 @@ void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::
     gpu::write_buffer(device, views, std::as_bytes(std::span(view_records)));
 }
 
+void GridRenderer::State::begin_filter(const FrameHeader& header) {
+    filter = ViewFilter::is_wanted(header) ? &histories.filter(request) : nullptr;
+    if (filter != nullptr) {
+        filter->begin(header, request, make_camera_records(view_cameras));
+    }
+}
+
 void GridRenderer::State::record_visibility() {
     shared::VisibilityParams params{};
     params.cameras = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
@@ -218,8 +211,12 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.holes = filler.map().address();
     params.layer_pixels = layer_pixels.address();
     params.glossy_pixels = reflections.pixels().address();
-    params.flags = reflections.are_wanted(header) ? shared::kFlagReflections : 0;
+    params.flags = (wants_reflections(header) ? shared::kFlagReflections : 0) |
+                   (filter != nullptr ? shared::kFlagKeepLight : 0);
     params.counters = counters.address();
+    if (filter != nullptr) {
+        params.light = filter->light();
+    }
     params.width = request.width_px;
     params.height = request.height_px;
     params.view_count = view_count();
@@ -228,6 +225,14 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
                       {gpu::groups_for(params.width, shared::kLinearGroup), params.height, params.view_count});
     recorder.barrier();
+}
+
+// The header gets the times of the stages so far.
+void GridRenderer::State::record_holes(FrameHeader& header) {
+    const shared::ViewLight light = filter != nullptr ? filter->light() : shared::ViewLight{};
+    filler.fill(recorder, header,
+                {visibility, views, counters, radiance, source_set, filter != nullptr ? &light : nullptr},
+                header.render_times);
 }
 
 // For kernels that go through a compacted list over all views.
@@ -309,6 +314,7 @@ Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& reques
     const HoleFiller::Batch batch = s.make_batch(header, request);
     s.resize(source);
     s.upload_cameras(source, batch.corners);
+    s.begin_filter(header);
 
     s.recorder.fill(s.counters, 0);
     s.filler.begin(s.recorder, batch, s.cameras);
@@ -316,15 +322,21 @@ Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& reques
     s.record_visibility();
     s.record_interleave(source);
     s.record_reproject(header);
-    s.filler.fill(s.recorder, header, {s.visibility, s.views, s.counters, s.radiance, s.source_set}, header.render_times);
-    if (s.reflections.are_wanted(header)) {
+    s.record_holes(header);
+    if (s.wants_reflections(header)) {
         s.reflections.record(s.recorder, s.list_params(header), s.counters, s.source_set);
+    }
+    if (s.filter != nullptr) {
+        s.filter->record(s.recorder, header, {s.visibility, s.layers, s.radiance});
     }
     if (s.scene.has_blend()) {
         s.record_layers(header);
     }
     s.record_tone_map(header);
     s.recorder.submit();
+    if (s.filter != nullptr) {
+        s.filter->end();
+    }
 
     append_times(s.recorder, header.render_times);
     const auto counts = gpu::read_buffer_as<std::uint32_t>(s.device, s.counters, s.counters.size_bytes() / 4);

@@ -4,22 +4,12 @@
 #include "core/lightfield/views.h"
 #include "core/render/hole_filler.h"
 #include "core/render/source_planes.h"
+#include "core/render/view_request.h"
 #include "core/scene/gpu_scene.h"
 
 #include <memory>
 
 namespace fieldcast::render {
-
-/// Which views to make. All share geometry, field of view and size, so that they are one batch.
-struct ViewRequest {
-    LatticeGeometry geometry;
-    float fovy_rad = 0.785398F; ///< ≤ the source's
-    std::uint32_t width_px = 0;
-    std::uint32_t height_px = 0; ///< ≤ the source's
-    std::vector<LatticePosition> positions;
-
-    bool operator==(const ViewRequest&) const = default;
-};
 
 /// Linear radiance of one view, for measuring: row-major RGB, unexposed.
 struct LinearView {
@@ -29,15 +19,17 @@ struct LinearView {
 };
 
 /// Makes finished views from a source frame and the scene: visibility of all views, backward reprojection of the
-/// illumination with footprint-scaled tests, remodulation with the target's own material, path tracing of what was
-/// discarded and could not be had otherwise (HoleFiller), tone mapping. The same class on server and clients.
+/// illumination with footprint-scaled tests, path tracing of what was discarded and could not be had otherwise
+/// (HoleFiller), averages and denoiser of the views where the settings ask for them (ViewFilter), remodulation with the
+/// target's own material, tone mapping. The same class on server and clients.
 class GridRenderer {
 public:
     GridRenderer(const gpu::Device& device, const scene::GpuScene& scene);
     ~GridRenderer();
 
     /// Views in the order of `request.positions`; the result's header is the source's with the stage times of this call
-    /// appended. The scene must be posed for the source's scene time.
+    /// appended. The scene must be posed for the source's scene time. Throws UserError if the views are to be filtered
+    /// and are more than the device has room for.
     Views render(const SourcePlanes& source, const ViewRequest& request);
 
     /// Linear image of view `index` of the last render().

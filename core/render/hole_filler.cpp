@@ -36,6 +36,7 @@ HoleFiller::HoleFiller(const gpu::Device& device, const scene::GpuScene& scene, 
       cascade_(make_scene_kernel(device, scene, KernelId::kCascadeHoles, sizeof(shared::HoleParams), {&source_layout})),
       filter_(make_scene_kernel(device, scene, KernelId::kFilterHoles, sizeof(shared::HoleParams), {&source_layout})),
       shade_(make_scene_kernel(device, scene, KernelId::kShadeHoles, sizeof(shared::HoleParams), {&source_layout})),
+      keep_(make_plain_kernel(device, KernelId::kKeepHoles, sizeof(shared::KeepHolesParams))),
       frame_records_(device, 2 * sizeof(shared::HoleFrame)) {}
 
 void HoleFiller::begin(gpu::Recorder& recorder, const Batch& batch, const gpu::Buffer& cameras) {
@@ -122,14 +123,32 @@ void HoleFiller::trace_list(gpu::Recorder& recorder, const Targets& targets, sha
     recorder.barrier();
 }
 
+void HoleFiller::keep(gpu::Recorder& recorder, const shared::ViewLight& light, const shared::HoleParams& params) const {
+    shared::KeepHolesParams kept{};
+    kept.frame = batch_.history->now().record();
+    kept.light_in = params.light_in;
+    kept.diffuse = light.diffuse;
+    kept.specular = light.specular;
+    kept.width = params.width;
+    kept.height = params.height;
+    kept.hole_count = params.hole_count;
+    recorder.stage("keep_holes");
+    recorder.dispatch(keep_, {}, kept, linear_groups(hole_count_));
+    recorder.barrier();
+}
+
 void HoleFiller::smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
-                                         shared::HoleParams params) {
+                                  shared::HoleParams params) {
     const std::initializer_list<const gpu::BindingSet*> sets{&scene_.bindings(), &targets.source_set};
     if (hole_filling(header).denoise) {
         recorder.stage("denoise_holes");
         recorder.dispatch(filter_, sets, params, linear_groups(hole_count_));
         recorder.barrier();
         params.light_in = filtered_.address();
+    }
+    if (targets.light != nullptr) {
+        keep(recorder, *targets.light, params);
+        return;
     }
     recorder.stage("shade_holes");
     recorder.dispatch(shade_, sets, params, linear_groups(hole_count_));

@@ -66,10 +66,11 @@ public:
         const gpu::Buffer& counters;
         const gpu::Buffer& radiance;
         const gpu::BindingSet& source_set;
+        const shared::ViewLight* light = nullptr; ///< of views that are filtered: gets the holes' light, radiance does not
     };
 
     /// Numbers the holes and submits the recorder, since their count decides how large arrays must be; `times` gets the
-    /// stages so far. Then records the filling of `targets.radiance`.
+    /// stages so far. Then records the filling of `targets.radiance` or `targets.light`.
     void fill(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets, std::vector<StageTime>& times);
 
     /// What the counters of the batch say once all is done.
@@ -83,6 +84,7 @@ private:
     void reserve(std::uint32_t hole_count);
     shared::HoleParams make_params(const FrameHeader& header, const Targets& targets) const;
     void trace_list(gpu::Recorder& recorder, const Targets& targets, shared::HoleParams params, std::uint32_t list);
+    void keep(gpu::Recorder& recorder, const shared::ViewLight& light, const shared::HoleParams& params) const;
     void smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
                           shared::HoleParams params);
 
@@ -97,6 +99,7 @@ private:
     gpu::Kernel cascade_;
     gpu::Kernel filter_;
     gpu::Kernel shade_;
+    gpu::Kernel keep_;
     Batch batch_;
     std::uint32_t word_count_ = 0; ///< of the map, over all views
     std::uint32_t hole_count_ = 0;

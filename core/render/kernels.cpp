@@ -10,6 +10,7 @@
 #include "shaders/filter_holes.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
+#include "shaders/keep_holes.spv.h"
 #include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/pack_source.spv.h"
@@ -18,6 +19,7 @@
 #include "shaders/reproject.spv.h"
 #include "shaders/scan_holes.spv.h"
 #include "shaders/shade_holes.spv.h"
+#include "shaders/shade_views.spv.h"
 #include "shaders/source_surfaces.spv.h"
 #include "shaders/start_holes.spv.h"
 #include "shaders/svgf_atrous.spv.h"
@@ -35,68 +37,56 @@
 
 #include "core/base/error.h"
 
+#include <algorithm>
+
 namespace fieldcast::render {
 
+namespace {
+
+/// A kernel for both ways of traversal; those that trace no rays have the same code for both.
+struct EmbeddedKernel {
+    KernelId id;
+    const char* name;
+    std::span<const std::uint32_t> bvh;
+    std::span<const std::uint32_t> ray_query;
+};
+
+const EmbeddedKernel kKernels[] = {
+    {KernelId::kBmfrEvaluate, "bmfr_evaluate", bmfr_evaluate_spv, bmfr_evaluate_spv},
+    {KernelId::kBmfrFit, "bmfr_fit", bmfr_fit_spv, bmfr_fit_spv},
+    {KernelId::kCascadeHoles, "cascade_holes", cascade_holes_spv, cascade_holes_spv},
+    {KernelId::kCompositeLayers, "composite_layers", composite_layers_bvh_spv, composite_layers_rayquery_spv},
+    {KernelId::kCountHoles, "count_holes", count_holes_spv, count_holes_spv},
+    {KernelId::kFilterHoles, "filter_holes", filter_holes_spv, filter_holes_spv},
+    {KernelId::kFinishList, "finish_list", finish_list_spv, finish_list_spv},
+    {KernelId::kInterleaveSource, "interleave_source", interleave_source_spv, interleave_source_spv},
+    {KernelId::kKeepHoles, "keep_holes", keep_holes_spv, keep_holes_spv},
+    {KernelId::kLimitHistory, "limit_history", limit_history_spv, limit_history_spv},
+    {KernelId::kListHoles, "list_holes", list_holes_spv, list_holes_spv},
+    {KernelId::kPackSource, "pack_source", pack_source_spv, pack_source_spv},
+    {KernelId::kReflectViews, "reflect_views", reflect_views_bvh_spv, reflect_views_rayquery_spv},
+    {KernelId::kReproject, "reproject", reproject_spv, reproject_spv},
+    {KernelId::kScanHoles, "scan_holes", scan_holes_spv, scan_holes_spv},
+    {KernelId::kShadeHoles, "shade_holes", shade_holes_spv, shade_holes_spv},
+    {KernelId::kShadeViews, "shade_views", shade_views_spv, shade_views_spv},
+    {KernelId::kSourceSurfaces, "source_surfaces", source_surfaces_spv, source_surfaces_spv},
+    {KernelId::kStartHoles, "start_holes", start_holes_spv, start_holes_spv},
+    {KernelId::kSvgfAtrous, "svgf_atrous", svgf_atrous_spv, svgf_atrous_spv},
+    {KernelId::kSvgfVariance, "svgf_variance", svgf_variance_spv, svgf_variance_spv},
+    {KernelId::kTemporal, "temporal", temporal_spv, temporal_spv},
+    {KernelId::kToneMap, "tone_map", tone_map_spv, tone_map_spv},
+    {KernelId::kTraceHoles, "trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv},
+    {KernelId::kTraceReference, "trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv},
+    {KernelId::kTraceSource, "trace_source", trace_source_bvh_spv, trace_source_rayquery_spv},
+    {KernelId::kVisibility, "visibility", visibility_bvh_spv, visibility_rayquery_spv},
+};
+
+} // namespace
+
 gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
-    const bool bvh = traversal == scene::Traversal::kBvh;
-    const auto traced = [bvh](const char* name, std::span<const std::uint32_t> own,
-                              std::span<const std::uint32_t> query) {
-        return gpu::KernelCode{name, bvh ? own : query};
-    };
-    switch (id) {
-    case KernelId::kBmfrEvaluate:
-        return {"bmfr_evaluate", bmfr_evaluate_spv};
-    case KernelId::kBmfrFit:
-        return {"bmfr_fit", bmfr_fit_spv};
-    case KernelId::kCascadeHoles:
-        return {"cascade_holes", cascade_holes_spv};
-    case KernelId::kCountHoles:
-        return {"count_holes", count_holes_spv};
-    case KernelId::kFilterHoles:
-        return {"filter_holes", filter_holes_spv};
-    case KernelId::kLimitHistory:
-        return {"limit_history", limit_history_spv};
-    case KernelId::kListHoles:
-        return {"list_holes", list_holes_spv};
-    case KernelId::kScanHoles:
-        return {"scan_holes", scan_holes_spv};
-    case KernelId::kShadeHoles:
-        return {"shade_holes", shade_holes_spv};
-    case KernelId::kStartHoles:
-        return {"start_holes", start_holes_spv};
-    case KernelId::kFinishList:
-        return {"finish_list", finish_list_spv};
-    case KernelId::kInterleaveSource:
-        return {"interleave_source", interleave_source_spv};
-    case KernelId::kPackSource:
-        return {"pack_source", pack_source_spv};
-    case KernelId::kReproject:
-        return {"reproject", reproject_spv};
-    case KernelId::kSourceSurfaces:
-        return {"source_surfaces", source_surfaces_spv};
-    case KernelId::kSvgfAtrous:
-        return {"svgf_atrous", svgf_atrous_spv};
-    case KernelId::kSvgfVariance:
-        return {"svgf_variance", svgf_variance_spv};
-    case KernelId::kTemporal:
-        return {"temporal", temporal_spv};
-    case KernelId::kToneMap:
-        return {"tone_map", tone_map_spv};
-    case KernelId::kTraceHoles:
-        return traced("trace_holes", trace_holes_bvh_spv, trace_holes_rayquery_spv);
-    case KernelId::kCompositeLayers:
-        return traced("composite_layers", composite_layers_bvh_spv, composite_layers_rayquery_spv);
-    case KernelId::kReflectViews:
-        return traced("reflect_views", reflect_views_bvh_spv, reflect_views_rayquery_spv);
-    case KernelId::kTraceReference:
-        return traced("trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv);
-    case KernelId::kTraceSource:
-        return traced("trace_source", trace_source_bvh_spv, trace_source_rayquery_spv);
-    case KernelId::kVisibility:
-        return traced("visibility", visibility_bvh_spv, visibility_rayquery_spv);
-    }
-    FC_ASSERT(false, "unknown kernel");
-    return {};
+    const auto kernel = std::ranges::find(kKernels, id, &EmbeddedKernel::id);
+    FC_ASSERT(kernel != std::end(kKernels), "unknown kernel");
+    return {kernel->name, traversal == scene::Traversal::kBvh ? kernel->bvh : kernel->ray_query};
 }
 
 gpu::Kernel make_scene_kernel(const gpu::Device& device, const scene::GpuScene& scene, KernelId id,

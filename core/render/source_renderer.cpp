@@ -35,7 +35,9 @@ struct SourceRenderer::State {
     std::uint32_t still_frames(const FrameHeader& header) const;
     void upload_cameras();
     void record_trace();
+    void record_filter(bool has_history, bool is_still);
     void record_pack();
+    void pack_pages(std::uint32_t first, std::uint32_t count, const gpu::Buffer& diffuse, const gpu::Buffer& specular);
 
     const gpu::Device& device;
     const scene::GpuScene& scene;
@@ -98,16 +100,46 @@ void SourceRenderer::State::record_trace() {
     recorder.barrier();
 }
 
+void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
+    const FrameHeader& header = planes.header();
+    const Camera camera = planes.camera();
+    filter.record(recorder, {.cameras = cameras.address(),
+                             .visibility = surfaces.visibility().address(),
+                             .layers = surfaces.layers().address(),
+                             .width = camera.width_px,
+                             .height = camera.height_px,
+                             .page_count = planes.page_count(),
+                             .source_count = planes.source_count(),
+                             .has_history = has_history,
+                             .is_still = is_still,
+                             .least_weight = least_weight(header),
+                             .number = header.noise_frame,
+                             .settings = header.settings});
+}
+
+// The red route's light stays as it was traced; only that of layers, which no view denoises, is filtered here.
 void SourceRenderer::State::record_pack() {
+    const std::uint32_t pages = planes.page_count();
+    const std::uint32_t noisy_pages = denoises_views(planes.header()) ? planes.source_count() : 0;
+    recorder.stage("pack");
+    pack_pages(0, noisy_pages, filter.noisy_diffuse(), filter.noisy_specular());
+    pack_pages(noisy_pages, pages - noisy_pages, filter.diffuse(), filter.specular());
+    recorder.barrier();
+}
+
+void SourceRenderer::State::pack_pages(std::uint32_t first, std::uint32_t count, const gpu::Buffer& diffuse,
+                                       const gpu::Buffer& specular) {
+    if (count == 0) {
+        return;
+    }
     shared::PackParams params{};
-    params.diffuse_in = filter.diffuse().address();
-    params.specular_in = filter.specular().address();
+    params.diffuse_in = diffuse.address();
+    params.specular_in = specular.address();
     params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
-    params.pixel_count = planes.texel_count();
-    recorder.stage("pack");
+    params.first_pixel = first * planes.pixel_count();
+    params.pixel_count = count * planes.pixel_count();
     recorder.dispatch(pack, {}, params, linear_groups(params.pixel_count));
-    recorder.barrier();
 }
 
 SourceRenderer::SourceRenderer(const gpu::Device& device, const scene::GpuScene& scene)
@@ -130,19 +162,10 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
 
     s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.filter.geometry());
     s.record_trace();
-    const Camera camera = s.planes.camera();
-    s.filter.record(s.recorder, {.cameras = s.cameras.address(),
-                                 .visibility = s.surfaces.visibility().address(),
-                                 .layers = s.surfaces.layers().address(),
-                                 .width = camera.width_px,
-                                 .height = camera.height_px,
-                                 .page_count = s.planes.page_count(),
-                                 .source_count = s.planes.source_count(),
-                                 .has_history = has_history,
-                                 .is_still = is_still,
-                                 .least_weight = least_weight(timed),
-                                 .number = header.noise_frame,
-                                 .settings = header.settings});
+    const bool is_filtered = !denoises_views(timed) || s.planes.page_count() > s.planes.source_count();
+    if (is_filtered) {
+        s.record_filter(has_history, is_still);
+    }
     s.record_pack();
     s.recorder.submit();
 
@@ -151,7 +174,8 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.filter.swap();
     s.previous = source_cameras(s.planes);
     s.last = timed;
-    s.has_stored_history = is_still || header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
+    s.has_stored_history = is_filtered && (is_still || header.settings.temporal_accumulation ||
+                                           header.settings.denoiser != Denoiser::kNone);
     return s.planes;
 }
 

@@ -43,6 +43,28 @@ std::optional<Denoiser> denoiser_from_proto(int number) {
     }
 }
 
+v1::Route route_to_proto(Route route) {
+    switch (route) {
+    case Route::kGreen:
+        return v1::ROUTE_GREEN;
+    case Route::kRed:
+        return v1::ROUTE_RED;
+    }
+    return v1::ROUTE_UNSPECIFIED;
+}
+
+std::optional<Route> route_from_proto(int number) {
+    switch (number) {
+    case v1::ROUTE_UNSPECIFIED: // as senders wrote before there were two
+    case v1::ROUTE_GREEN:
+        return Route::kGreen;
+    case v1::ROUTE_RED:
+        return Route::kRed;
+    default: // any number may stand in a message
+        return std::nullopt;
+    }
+}
+
 v1::ToneMap tone_map_to_proto(ToneMap tone_map) {
     switch (tone_map) {
     case ToneMap::kClampSrgb:
@@ -94,6 +116,22 @@ Decoded<void> check_floats(const RenderSettings& settings) {
     return {};
 }
 
+Decoded<void> check_counts(const v1::RenderSettings& message) {
+    if (message.samples_per_pixel() == 0 || message.samples_per_pixel() > kMaxSamplesPerPixel) {
+        return decode_error("settings.samples_per_pixel: 1 to " + std::to_string(kMaxSamplesPerPixel));
+    }
+    if (message.max_bounces() > kMaxBounces) {
+        return decode_error("settings.max_bounces: at most " + std::to_string(kMaxBounces));
+    }
+    if (message.light_sampling().candidates() > kMaxLightCandidates) {
+        return decode_error("settings.light_sampling.candidates: at most " + std::to_string(kMaxLightCandidates));
+    }
+    if (message.sampler() > v1::SAMPLER_Z_SOBOL || message.sampler() < 0) {
+        return decode_error("settings.sampler: unknown sampler " + std::to_string(message.sampler()));
+    }
+    return {};
+}
+
 void to_proto(const HoleFilling& holes, v1::HoleFilling& message) {
     message.set_previous_frame(holes.previous_frame);
     message.set_isolated(holes.isolated);
@@ -134,25 +172,22 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     message.set_accumulate(settings.accumulate);
     message.set_reflections(settings.reflections);
     message.set_sampler(settings.sampler == Sampler::kZSobol ? v1::SAMPLER_Z_SOBOL : v1::SAMPLER_SOBOL);
+    message.set_accumulate_views(settings.accumulate_views);
+    message.set_route(route_to_proto(settings.route));
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     const auto denoiser = denoiser_from_proto(message.denoiser());
     const auto tone_map = tone_map_from_proto(message.tone_map());
-    if (!denoiser || !tone_map) {
-        return decode_error("settings: unknown denoiser or tone map");
+    const auto route = route_from_proto(message.route());
+    if (!denoiser || !tone_map || !route) {
+        return decode_error("settings: unknown denoiser, tone map or route");
     }
     RenderSettings settings;
     settings.samples_per_pixel = message.samples_per_pixel();
     settings.max_bounces = message.max_bounces();
-    if (settings.samples_per_pixel == 0 || settings.samples_per_pixel > kMaxSamplesPerPixel) {
-        return decode_error("settings.samples_per_pixel: 1 to " + std::to_string(kMaxSamplesPerPixel));
-    }
-    if (settings.max_bounces > kMaxBounces) {
-        return decode_error("settings.max_bounces: at most " + std::to_string(kMaxBounces));
-    }
-    if (message.light_sampling().candidates() > kMaxLightCandidates) {
-        return decode_error("settings.light_sampling.candidates: at most " + std::to_string(kMaxLightCandidates));
+    if (const auto checked = check_counts(message); !checked) {
+        return tl::unexpected(checked.error());
     }
     settings.light_sampling = {std::max(message.light_sampling().candidates(), 1U), message.light_sampling().each_kind()};
     settings.next_event_estimation = message.next_event_estimation();
@@ -171,10 +206,9 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     settings.holes = *holes;
     settings.accumulate = message.accumulate();
     settings.reflections = message.reflections();
-    if (message.sampler() > v1::SAMPLER_Z_SOBOL || message.sampler() < 0) {
-        return decode_error("settings.sampler: unknown sampler " + std::to_string(message.sampler()));
-    }
     settings.sampler = message.sampler() == v1::SAMPLER_Z_SOBOL ? Sampler::kZSobol : Sampler::kSobol;
+    settings.accumulate_views = message.accumulate_views();
+    settings.route = *route;
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }

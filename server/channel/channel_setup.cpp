@@ -3,9 +3,12 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/render/setup.h"
+#include "core/render/view_filter.h"
 #include "core/scene/bundle.h"
 #include "core/scene/gltf_loader.h"
 #include "server/channel/frame_renderer.h"
+
+#include <algorithm>
 
 namespace fieldcast::channel {
 
@@ -14,6 +17,7 @@ FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& confi
     info_.name = channel.name;
     load(channel);
     settle_lattice();
+    limit_views();
     settle_guard_band();
     warm_up();
 }
@@ -54,6 +58,21 @@ void FrameRenderer::settle_lattice() {
     constexpr float kDefaultSpacing_m = 0.03F;
     const float spacing_m = config_.spacing_m.value_or(camera_node_->spacing_m.value_or(kDefaultSpacing_m));
     info_.largest_grid.geometry.spacing_m = glm::vec2(spacing_m);
+}
+
+// Views that average or denoise their own light need room on the device.
+void FrameRenderer::limit_views() {
+    if (settings_.route == Route::kGreen && !settings_.accumulate_views) {
+        return;
+    }
+    render::ViewFilter::check(device_, settings_,
+                              {.geometry = info_.largest_grid.geometry,
+                               .fovy_rad = info_.fovy_rad,
+                               .width_px = config_.width_px,
+                               .height_px = config_.height_px,
+                               .positions = lattice_positions(info_.largest_grid)});
+    info_.max_view_pixels =
+        std::min(info_.max_view_pixels, render::ViewFilter::max_pixels(device_, settings_));
 }
 
 void FrameRenderer::settle_guard_band() {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flag_text.h"
 
+#include "core/lightfield/presets.h"
 #include "core/lightfield/sources.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
@@ -40,6 +42,19 @@ template <class T> struct Word {
     std::string_view word;
     T value;
 };
+
+constexpr std::array kDenoisers{Word{.word = "svgf+", .value = Denoiser::kSvgfPlus},
+                                Word{.word = "svgf", .value = Denoiser::kSvgf},
+                                Word{.word = "bmfr", .value = Denoiser::kBmfr},
+                                Word{.word = "none", .value = Denoiser::kNone}};
+constexpr std::array kRoutes{Word{.word = "green", .value = Route::kGreen}, Word{.word = "red", .value = Route::kRed}};
+constexpr std::array kSamplers{Word{.word = "z-sobol", .value = Sampler::kZSobol},
+                               Word{.word = "sobol", .value = Sampler::kSobol}};
+constexpr std::array kSwitch{Word{.word = "off", .value = false}, Word{.word = "on", .value = true}};
+
+template <class T, std::size_t kCount> std::string word_of(T value, const std::array<Word<T>, kCount>& words) {
+    return std::string(std::ranges::find(words, value, &Word<T>::value)->word);
+}
 
 template <class T, std::size_t kCount>
 void read_word(const char* flag, const std::string& text, const std::array<Word<T>, kCount>& words, T& value,
@@ -166,9 +181,32 @@ void read_holes(const FlagText& text, Config& config, Problems& problems) { // a
     config.settings.holes = *holes;
 }
 
+void read_preset(const FlagText& text, Problems& problems) {
+    if (!find_preset(text.preset, 1, 1)) {
+        problems.push_back("--preset " + text.preset + ": one of " + preset_names());
+    }
+}
+
 } // namespace
 
+void apply_preset(FlagText& text, Config& config) {
+    const auto preset = find_preset(text.preset, config.largest_grid.rows, config.largest_grid.cols);
+    if (!preset) {
+        return;
+    }
+    config.settings = preset->settings;
+    text.denoiser = word_of(preset->settings.denoiser, kDenoisers);
+    text.sampler = word_of(preset->settings.sampler, kSamplers);
+    text.lacks_reflections = !preset->settings.reflections;
+    text.route = word_of(preset->settings.route, kRoutes);
+    text.accumulate_views = word_of(preset->settings.accumulate_views, kSwitch);
+    text.holes = preset->settings.holes == HoleFilling::path_traced() ? "none" : "all";
+    text.guard_band = preset->has_guard_band ? "auto" : "none";
+    text.sources = preset->sources;
+}
+
 void read_text(const FlagText& text, Config& config, Problems& problems) {
+    read_preset(text, problems);
     read_channels(text, config, problems);
     read_sky(text, config, problems);
     read_guard_band(text, config, problems);
@@ -183,20 +221,17 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         config.port_file = text.port_file;
     }
     config.settings.next_event_estimation = !text.lacks_next_event_estimation;
-    constexpr std::array kDenoisers{Word{.word = "svgf+", .value = Denoiser::kSvgfPlus},
-                                    Word{.word = "svgf", .value = Denoiser::kSvgf},
-                                    Word{.word = "bmfr", .value = Denoiser::kBmfr},
-                                    Word{.word = "none", .value = Denoiser::kNone}};
+    config.settings.reflections = !text.lacks_reflections;
     constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},
                                    Word{.word = "aces", .value = ToneMap::kAces}};
-    constexpr std::array kSamplers{Word{.word = "z-sobol", .value = Sampler::kZSobol},
-                                   Word{.word = "sobol", .value = Sampler::kSobol}};
     constexpr std::array kClocks{Word{.word = "real", .value = ClockMode::kReal},
                                  Word{.word = "frames", .value = ClockMode::kFrames}};
     constexpr std::array kLevels{
         Word{.word = "debug", .value = log::Level::kDebug}, Word{.word = "info", .value = log::Level::kInfo},
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
     read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
+    read_word("--route", text.route, kRoutes, config.settings.route, problems);
+    read_word("--accumulate-views", text.accumulate_views, kSwitch, config.settings.accumulate_views, problems);
     read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);
     read_word("--sampler", text.sampler, kSamplers, config.settings.sampler, problems);
     read_word("--clock", text.clock, kClocks, config.clock, problems);

@@ -19,7 +19,11 @@ struct FlagText {
     std::string largest_grid = "6x6";
     std::string sources = "middle";
     bool lacks_next_event_estimation = false;
+    bool lacks_reflections = false;
+    std::string preset = "ours"; ///< what other flags' defaults come from
     std::string denoiser = "svgf+";
+    std::string route = "green";
+    std::string accumulate_views = "off";
     std::string holes = "all";
     std::string sampler = "z-sobol";
     std::string exposure = "auto";
@@ -34,6 +38,9 @@ struct FlagText {
     std::string tokens;
     std::string log_level = "info";
 };
+
+/// Defaults as the preset `text.preset` has them; nothing if there is no such preset.
+void apply_preset(FlagText& text, Config& config);
 
 /// Fills `config` from `text`; adds a line to `problems` for everything that cannot be read.
 void read_text(const FlagText& text, Config& config, std::vector<std::string>& problems);

@@ -2,6 +2,7 @@
 #include "server/ops/flags.h"
 
 #include "core/base/error.h"
+#include "core/lightfield/presets.h"
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
 #include "server/ops/new_token.h"
@@ -67,8 +68,38 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
         ->capture_default_str();
 }
 
+/// What happens to the light that was traced.
+void add_filter_flags(CLI::App& app, FlagText& text, RenderSettings& settings) {
+    app.add_option("--denoiser", text.denoiser, "svgf+, svgf, bmfr or none")->group("Rendering")->capture_default_str();
+    app.add_option("--sampler", text.sampler,
+                   "Random numbers: z-sobol (neighbouring pixels complement one another) or sobol (each on its own)")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_flag("--no-reflections", text.lacks_reflections,
+                 "Light of smooth surfaces sticks to them in all views, as if they were rough")
+        ->group("Rendering");
+    app.add_option("--holes", text.holes,
+                   "How pixels are filled that the source does not show: all, none (path traced), or a list of "
+                   "previous,isolated,cascade,source,denoise")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_option("--route", text.route, "What is denoised: the source (green), or every view (red)")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_option("--accumulate-views", text.accumulate_views,
+                   "on: every view averages its own light over frames as well, as in the paper; or off")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_option("--alpha", settings.temporal_alpha, "Weight of a new frame in the history")
+        ->group("Rendering")
+        ->capture_default_str();
+}
+
 void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     RenderSettings& settings = config.settings;
+    app.add_option("--preset", text.preset, "Where the defaults of the other flags come from: " + preset_names())
+        ->group("Rendering")
+        ->capture_default_str();
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
     app.add_option("--light-candidates", settings.light_sampling.candidates,
@@ -82,22 +113,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--accumulate", settings.accumulate,
                  "While nothing moves, average frames without bias instead of denoising them")
         ->group("Rendering");
-    app.add_option("--sampler", text.sampler,
-                   "Random numbers: z-sobol (neighbouring pixels complement one another) or sobol (each on its own)")
-        ->group("Rendering")
-        ->capture_default_str();
-    app.add_option("--denoiser", text.denoiser, "svgf+, svgf, bmfr or none")->group("Rendering")->capture_default_str();
-    app.add_flag("!--no-reflections", settings.reflections,
-                 "Light of smooth surfaces sticks to them in all views, as if they were rough")
-        ->group("Rendering");
-    app.add_option("--holes", text.holes,
-                   "How pixels are filled that the source does not show: all, none (path traced), or a list of "
-                   "previous,isolated,cascade,source,denoise")
-        ->group("Rendering")
-        ->capture_default_str();
-    app.add_option("--alpha", settings.temporal_alpha, "Weight of a new frame in the history")
-        ->group("Rendering")
-        ->capture_default_str();
+    add_filter_flags(app, text, settings);
     app.add_option("--exposure", text.exposure, "auto: log average, frozen after the first frame; or a factor")
         ->group("Rendering")
         ->capture_default_str();
@@ -177,7 +193,9 @@ struct CommandLine {
     OfflineJob job;
     std::vector<std::string> products{"quilt", "views", "exr"};
 
-    explicit CommandLine(bool is_offline = false) : renders(is_offline) {
+    explicit CommandLine(bool is_offline = false, const std::string& preset = "ours") : renders(is_offline) {
+        text.preset = preset;
+        apply_preset(text, config);
         app.footer(kExamples);
         app.allow_extras(); // so that all of them can be told
         app.set_version_flag("--version", "fieldcast-server " FIELDCAST_VERSION);
@@ -243,9 +261,11 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         file = read_config_file(typed.config_file, typed.app);
         check_each(file);
     }
-    CommandLine all(typed.renders);
     std::vector<std::string> merged(file.arguments);
     merged.insert(merged.end(), arguments.begin(), arguments.end());
+    CommandLine first(typed.renders);
+    parse(first, merged); // for the preset; problems are told below
+    CommandLine all(typed.renders, first.text.preset);
     Invocation invocation;
     std::vector<std::string> problems = parse(all, merged);
     read_text(all.text, all.config, problems);

@@ -53,6 +53,7 @@ const uint kFlagKeepTaps = 8;
 const uint kFlagReflections = 16;
 const uint kFlagSharpHistory = 32;
 const uint kFlagFollowLobes = 64;
+const uint kFlagKeepLight = 128;
 
 // How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
 const uint kPathCandidatesShift = 16;
@@ -180,7 +181,8 @@ struct PackParams {
     Vec4Buffer specular_in;
     UintBuffer diffuse;  // out: R11G11B10F
     UintBuffer specular;
-    uint pixel_count; // of all pages
+    uint first_pixel;    // of all pages
+    uint pixel_count;
 };
 
 // interleave_source.comp: wire planes into the texels that reproject.comp reads.
@@ -228,6 +230,13 @@ struct ReprojectSettings {
     uint source_count;
 };
 
+// Views whose light is averaged or filtered before their own materials come in: each is a page, without padding.
+struct ViewLight {
+    Uvec4Buffer geometry; // GeometryTexel
+    Vec4Buffer diffuse;   // rgb
+    Vec4Buffer specular;
+};
+
 // reproject.comp: every pixel of every view. Reads set 1: kReproject….
 struct ReprojectParams {
     CameraBuffer cameras;        // kMaxSources (guard band included), then the views
@@ -238,14 +247,27 @@ struct ReprojectParams {
     UintBuffer layer_pixels;     // out
     UintBuffer glossy_pixels;    // out, with kFlagReflections
     UintBuffer counters;
+    ViewLight light;             // out, with kFlagKeepLight, instead of the radiance of surfaces
     uint width;
     uint height;
     uint view_count;
-    uint flags;                  // kFlagReflections: lists pixels for reflect_views.comp
+    uint flags;                  // kFlagReflections: lists pixels for reflect_views.comp; kFlagKeepLight
     ReprojectSettings settings;
 };
 const uint kReprojectGeometry = 0;     // RGBA32UI GeometryTexel
 const uint kReprojectIllumination = 1; // RG32UI: diffuse, specular (R11G11B10F)
+
+// shade_views.comp: radiance of views from their light.
+struct ShadeViewsParams {
+    CameraBuffer cameras;        // of the views
+    VisibilityBuffer visibility;
+    Uvec2Buffer radiance;        // out: of pixels that see a surface
+    Vec4Buffer diffuse;          // pages, as in ViewLight
+    Vec4Buffer specular;
+    uint width;
+    uint height;
+    uint view_count;
+};
 
 // finish_list.comp: group counts of an indirect dispatch from a list's length.
 struct FinishListParams {

@@ -67,5 +67,16 @@ struct HoleParams {
     ReprojectSettings settings;
 };
 
+// keep_holes.comp: light of holes into the pages of their views.
+struct KeepHolesParams {
+    HoleFrame frame;
+    Uvec4Buffer light_in;
+    Vec4Buffer diffuse;  // out, as in ViewLight
+    Vec4Buffer specular;
+    uint width;
+    uint height;
+    uint hole_count;
+};
+
 SHARED_END
 #endif

@@ -124,6 +124,7 @@ TEST(FramePage, GroupsStagesAsThePaperDoes) {
     EXPECT_EQ(kind_of_stage("denoise_holes"), "other hole filling");
     EXPECT_EQ(kind_of_stage("holes"), "hole paths");
     EXPECT_EQ(kind_of_stage("interleave"), "reprojection");
+    EXPECT_EQ(kind_of_stage("shade_views"), "reprojection"); // which shades where views are not filtered
     EXPECT_EQ(kind_of_stage("tone_map"), "rest");
     Json result = origin_of_result();
     result.update({{"grid", "6x6"},

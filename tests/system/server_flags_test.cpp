@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
 
+#include "core/lightfield/presets.h"
+
 #include <array>
 #include <fstream>
 #include <gmock/gmock.h>
@@ -9,6 +11,7 @@
 namespace fieldcast::ops {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -184,6 +187,35 @@ TEST(Flags, PrintsAConfigFileThatItReads) {
     EXPECT_EQ(again.config.frames_per_second, 12.0F);
     EXPECT_FALSE(again.config.settings.next_event_estimation);
     EXPECT_EQ(again.config.channels.size(), 1U);
+}
+
+TEST(Flags, APresetGivesDefaultsThatOtherFlagsReplace) {
+    const Config paper = read({"--scene", kFile, "--preset", "paper"}).config;
+    EXPECT_EQ(paper.settings, find_preset("paper", 6, 6)->settings);
+    EXPECT_EQ(paper.guard_band_mode, GuardBandMode::kFixed);
+    const Config other = read({"--scene", kFile, "--preset", "paper", "--accumulate-views", "off", "--route", "red",
+                               "--denoiser", "svgf+", "--holes", "cascade", "--guard-band", "auto"})
+                             .config;
+    EXPECT_FALSE(other.settings.accumulate_views);
+    EXPECT_EQ(other.settings.route, Route::kRed);
+    EXPECT_EQ(other.settings.denoiser, Denoiser::kSvgfPlus);
+    EXPECT_EQ(other.settings.holes.cascade_rows, 6U);
+    EXPECT_EQ(other.settings.light_sampling, LightSampling::plain()); // the preset's
+    EXPECT_EQ(other.guard_band_mode, GuardBandMode::kAuto);
+    EXPECT_EQ(read({"--scene", kFile}).config.settings, find_preset("ours", 6, 6)->settings);
+    EXPECT_THAT(read({"--scene", kFile, "--preset", "best"}).problems,
+                Contains(HasSubstr("--preset best: one of reprojected")));
+    EXPECT_THAT(read({"--scene", kFile, "--route", "blue"}).problems, Contains(HasSubstr("--route blue")));
+}
+
+TEST(Flags, PrintsAPresetThatItReads) {
+    const Invocation printed = read({"--scene", kFile, "--preset", "paper", "--alpha", "0.5", "--print-config"});
+    EXPECT_THAT(printed.text, AllOf(HasSubstr("preset = \"paper\"\n"), HasSubstr("accumulate-views = \"on\"\n")));
+    const std::string file = testing::TempDir() + "server_preset_test.toml";
+    std::ofstream(file) << printed.text;
+    const Invocation again = read({"--config", file.c_str()});
+    EXPECT_THAT(again.problems, IsEmpty()) << printed.text;
+    EXPECT_EQ(again.config.settings, printed.config.settings);
 }
 
 } // namespace

@@ -202,5 +202,12 @@ TEST(ServerProcess, RenderWritesALightFieldWithoutServing) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(ServerProcess, ViewsThatTheDeviceCannotDenoiseEndTheStart) {
+    Process process({"render", "--scene", kScene, "--route", "red", "--size", "8192x8192", "--largest-grid", "8x9",
+                     "--count", "1"}); // 4.8 · 10⁹ pixels: more than a texel buffer can have
+    EXPECT_EQ(process.wait(), 2);
+    EXPECT_NE(process.text().find("72 views of 8192x8192 are too many for"), std::string::npos) << process.text();
+}
+
 } // namespace
 } // namespace fieldcast::test

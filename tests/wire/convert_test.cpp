@@ -68,6 +68,22 @@ TEST(Convert, DenoisersKeepTheirNumbers) {
     }
 }
 
+TEST(Convert, RouteOfAFrameSurvives) {
+    FrameHeader header = test_header(7);
+    header.settings.route = Route::kRed;
+    header.settings.accumulate_views = true;
+    v1::FrameHeader message;
+    to_proto(header, message);
+    const auto back = from_proto(message, 7);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->settings, header.settings);
+    message.mutable_settings()->clear_route(); // as senders wrote before there were two
+    message.mutable_settings()->clear_accumulate_views();
+    const auto old = from_proto(message, 7);
+    ASSERT_TRUE(old) << old.error().message;
+    EXPECT_EQ(old->settings, test_header(7).settings);
+}
+
 struct HeaderDamage {
     const char* error;
     std::function<void(v1::FrameHeader&)> apply;
@@ -95,6 +111,7 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
         {"tone map", [](auto& m) { m.mutable_settings()->set_tone_map(v1::TONE_MAP_UNSPECIFIED); }},
         {"settings.sampler", [](auto& m) { m.mutable_settings()->set_sampler(static_cast<v1::Sampler>(3)); }},
         {"settings.sampler", [](auto& m) { m.mutable_settings()->set_sampler(static_cast<v1::Sampler>(-1)); }},
+        {"or route", [](auto& m) { m.mutable_settings()->set_route(static_cast<v1::Route>(9)); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(0); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(65537); }},
         {"max_bounces", [](auto& m) { m.mutable_settings()->set_max_bounces(257); }},

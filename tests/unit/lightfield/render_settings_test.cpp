@@ -53,5 +53,25 @@ TEST(Presets, AreChangedByWords) {
     EXPECT_FALSE(find_preset("ours/better", 6, 6));
 }
 
+TEST(Presets, OfThePaperAreSvgfButForTheirRoute) {
+    const RenderSettings svgf = find_preset("svgf", 6, 6)->settings;
+    RenderSettings paper = find_preset("paper", 6, 6)->settings;
+    RenderSettings red = find_preset("paper-red", 6, 6)->settings;
+    EXPECT_TRUE(paper.accumulate_views);
+    EXPECT_EQ(red.route, Route::kRed);
+    EXPECT_FALSE(find_preset("paper", 6, 6)->has_guard_band);
+    paper.accumulate_views = false;
+    red.route = Route::kGreen;
+    EXPECT_EQ(paper, svgf);
+    EXPECT_EQ(red, svgf);
+}
+
+TEST(Presets, RedIsOursButForItsRoute) {
+    RenderSettings red = find_preset("red", 6, 6)->settings;
+    EXPECT_EQ(red.route, Route::kRed);
+    red.route = Route::kGreen;
+    EXPECT_EQ(red, find_preset("ours", 6, 6)->settings);
+}
+
 } // namespace
 } // namespace fieldcast

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/render/hole_filler.h"
+#include "core/render/view_filter.h"
+
+#include <memory>
+
+namespace fieldcast::render {
+
+/// Holes of one set of views over frames.
+struct HistoryOfHoles {
+    ViewRequest request; ///< with the corner views
+    std::uint64_t pose_count = 0;
+    std::uint64_t last_use = 0;
+    HoleHistory holes;
+};
+
+/// What is kept of views from frame to frame. A channel has few sets of views; those not used for longest are forgotten.
+class ViewHistories {
+public:
+    ViewHistories(const gpu::Device& device, const scene::GpuScene& scene) : device_(device), scene_(scene) {}
+
+    /// Of exactly these views.
+    HistoryOfHoles& holes(const ViewRequest& request);
+
+    /// Of views of this geometry, field of view and size: where their number changes, kernels and room are kept.
+    ViewFilter& filter(const ViewRequest& request);
+
+private:
+    struct Filter {
+        Filter(const gpu::Device& device, const scene::GpuScene& scene, ViewRequest shown)
+            : kind(std::move(shown)), filter(device, scene) {}
+        ViewRequest kind; ///< without positions
+        std::uint64_t last_use = 0;
+        ViewFilter filter;
+    };
+
+    const gpu::Device& device_;
+    const scene::GpuScene& scene_;
+    std::uint64_t use_count_ = 0;
+    std::vector<std::unique_ptr<HistoryOfHoles>> holes_;
+    std::vector<std::unique_ptr<Filter>> filters_;
+};
+
+/// Indices of the views whose holes fill those of the others; positions that are missing are added.
+std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions);
+
+} // namespace fieldcast::render
