@@ -197,7 +197,7 @@ void apply_preset(FlagText& text, Config& config) {
     config.settings = preset->settings;
     text.denoiser = word_of(preset->settings.denoiser, kDenoisers);
     text.sampler = word_of(preset->settings.sampler, kSamplers);
-    text.lacks_reflections = !preset->settings.reflections;
+    text.reflections = word_of(preset->settings.reflections, kSwitch);
     text.route = word_of(preset->settings.route, kRoutes);
     text.accumulate_views = word_of(preset->settings.accumulate_views, kSwitch);
     text.holes = preset->settings.holes == HoleFilling::path_traced() ? "none" : "all";
@@ -221,7 +221,6 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         config.port_file = text.port_file;
     }
     config.settings.next_event_estimation = !text.lacks_next_event_estimation;
-    config.settings.reflections = !text.lacks_reflections;
     constexpr std::array kToneMaps{Word{.word = "srgb", .value = ToneMap::kClampSrgb},
                                    Word{.word = "aces", .value = ToneMap::kAces}};
     constexpr std::array kClocks{Word{.word = "real", .value = ClockMode::kReal},
@@ -230,6 +229,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         Word{.word = "debug", .value = log::Level::kDebug}, Word{.word = "info", .value = log::Level::kInfo},
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
     read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
+    read_word("--reflections", text.reflections, kSwitch, config.settings.reflections, problems);
     read_word("--route", text.route, kRoutes, config.settings.route, problems);
     read_word("--accumulate-views", text.accumulate_views, kSwitch, config.settings.accumulate_views, problems);
     read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);

@@ -19,7 +19,7 @@ struct FlagText {
     std::string largest_grid = "6x6";
     std::string sources = "middle";
     bool lacks_next_event_estimation = false;
-    bool lacks_reflections = false;
+    std::string reflections = "on";
     std::string preset = "ours"; ///< what other flags' defaults come from
     std::string denoiser = "svgf+";
     std::string route = "green";

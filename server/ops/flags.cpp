@@ -75,9 +75,10 @@ void add_filter_flags(CLI::App& app, FlagText& text, RenderSettings& settings) {
                    "Random numbers: z-sobol (neighbouring pixels complement one another) or sobol (each on its own)")
         ->group("Rendering")
         ->capture_default_str();
-    app.add_flag("--no-reflections", text.lacks_reflections,
-                 "Light of smooth surfaces sticks to them in all views, as if they were rough")
-        ->group("Rendering");
+    app.add_option("--reflections", text.reflections,
+                   "on: smooth surfaces show each view what they mirror there; off: their light sticks to them")
+        ->group("Rendering")
+        ->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
                    "previous,isolated,cascade,source,denoise")
