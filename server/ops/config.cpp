@@ -2,6 +2,7 @@
 #include "server/ops/config.h"
 
 #include "core/base/error.h"
+#include "core/base/host_port.h"
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 
@@ -122,6 +123,14 @@ void check_access(const Config& config, Problems& problems) {
                                         .has_tokens = security.tokens.has_value()};
     if (const auto problem = access::listening_problem(config.listen.host, protection)) {
         problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
+    }
+    if (config.metrics_listen) {
+        const auto problem = access::listening_problem(config.metrics_listen->host, protection);
+        if (problem && !is_loopback(config.metrics_listen->host)) {
+            problems.push_back("--metrics-listen " + to_text(*config.metrics_listen) + " " + *problem);
+        }
+        expect(problems, config.metrics_listen->port != 0 || config.metrics_port_file.has_value(), "--metrics-listen",
+               "port 0", "only together with --metrics-port-file, which tells the port");
     }
     if (security.tokens) {
         expect_usable(problems, "--tokens", [&] { access::TokenList::read(*security.tokens); });

@@ -30,7 +30,10 @@ struct FlagText {
     std::string tls_key;
     std::string tls_client_ca;
     std::string tokens;
+    std::string metrics_listen;
+    std::string metrics_port_file;
     std::string log_level = "info";
+    std::string log_format = "text";
 };
 
 /// Fills `config` from `text`; adds a line to `problems` for everything that cannot be read.

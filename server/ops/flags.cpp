@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
+#include "server/ops/health_flags.h"
 #include "server/ops/new_token.h"
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --channel red=a.gltf --channel blue=b.gltf --listen 127.0.0.1:0 --port-file port.txt
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
   fieldcast-server --make-token alice view
+  fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
   fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
 
 TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input.)";
@@ -99,6 +101,13 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--max-sessions-per-peer", config.limits.max_sessions_per_peer, "Of one address")
         ->group("Serving")
         ->capture_default_str();
+    app.add_option("--metrics-listen", text.metrics_listen,
+                   "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
+        ->group("Serving");
+    app.add_option("--metrics-port-file", text.metrics_port_file, "Gets the port number of /metrics")->group("Serving");
+    app.add_option("--log-format", text.log_format, "text, or json: one object per line")
+        ->group("Serving")
+        ->capture_default_str();
     app.add_option("--log-level", text.log_level, "debug, info, warn or error")
         ->group("Serving")
         ->capture_default_str();
@@ -115,6 +124,17 @@ void add_security_flags(CLI::App& app, FlagText& text) {
         ->group("Security");
 }
 
+void add_health_flags(CLI::App& app, HealthText& text) {
+    const auto add = [&](const char* flag, std::string& value, const char* help) {
+        app.add_option(flag, value, help)->group("Probing another server")->configurable(false);
+    };
+    add("--health", text.server,
+        "HOST:PORT or https://HOST:PORT: exit with 0 if that server says SERVING, else with 1");
+    add("--health-ca", text.ca, "PEM file: who may have signed its certificate; without it: the system's authorities");
+    add("--health-name", text.name, "Name in its certificate, if it is not the dialled one");
+    add("--health-token-file", text.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
+}
+
 /// Everything that can be typed, and where it goes.
 struct CommandLine {
     CLI::App app{"Path traces light fields and streams them to many displays.", "fieldcast-server"};
@@ -124,6 +144,7 @@ struct CommandLine {
     bool only_check = false;
     bool only_print = false;
     std::vector<std::string> new_token;
+    HealthText health;
 
     CommandLine() {
         app.footer(kExamples);
@@ -142,6 +163,7 @@ struct CommandLine {
         add_render_flags(app, text, config);
         add_serving_flags(app, text, config);
         add_security_flags(app, text);
+        add_health_flags(app, health);
     }
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
@@ -217,6 +239,11 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
         early.problems = parse(typed, arguments);
         if (early.problems.empty() && !typed.new_token.empty()) {
             early.text = new_token_text(typed.new_token.at(0), typed.new_token.at(1));
+            return early;
+        }
+        if (early.problems.empty() && !typed.health.server.empty()) {
+            early.kind = Invocation::Kind::kHealth;
+            early.health = read_health(typed.health, typed.text.tls_cert, typed.text.tls_key);
             return early;
         }
     } catch (const CLI::CallForVersion& version) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/ops/config.h"
+#include "server/service/health_probe.h"
 
 #include <string>
 #include <vector>
@@ -12,11 +13,13 @@ namespace fieldcast::ops {
 struct Invocation {
     enum class Kind : std::uint8_t {
         kServe,
-        kPrint, ///< only print `text`: --help, --version, --print-config, --make-token
-        kCheck, ///< only validate
+        kPrint,  ///< only print `text`: --help, --version, --print-config, --make-token
+        kCheck,  ///< only validate
+        kHealth, ///< only ask the server of `health`
     };
     Kind kind = Kind::kServe;
     Config config;
+    service::HealthQuestion health;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;
 };

@@ -38,7 +38,7 @@ Problem problem_of(access::Denial::Kind kind) {
 /// Asks the gate about every call.
 class TokenCheck final : public grpc::AuthMetadataProcessor {
 public:
-    explicit TokenCheck(const access::Gate& gate) : gate_(gate) {}
+    TokenCheck(const access::Gate& gate, ServiceMetrics& metrics) : gate_(gate), metrics_(metrics) {}
 
     bool IsBlocking() const override { return false; }
 
@@ -48,6 +48,7 @@ public:
         if (identity) {
             return grpc::Status::OK;
         }
+        metrics_.count_denied(identity.error().kind);
         log(method, identity.error());
         return to_status(problem_of(identity.error().kind), identity.error().message);
     }
@@ -60,6 +61,7 @@ private:
     }
 
     const access::Gate& gate_;
+    ServiceMetrics& metrics_;
     Guarded<RateLimit> log_rate_{RateLimit(kLogRate)};
 };
 
@@ -79,7 +81,8 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const access::Certifica
 
 } // namespace
 
-std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate) {
+std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate,
+                                                          ServiceMetrics& metrics) {
     std::shared_ptr<grpc::ServerCredentials> credentials;
     if (security.certificates) {
         credentials = tls_credentials(*security.certificates);
@@ -89,7 +92,7 @@ std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security
         return grpc::InsecureServerCredentials();
     }
     if (security.tokens) {
-        credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(gate));
+        credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(gate, metrics));
     }
     return credentials;
 }

@@ -7,8 +7,9 @@ namespace fieldcast::service {
 
 namespace {
 
-tl::unexpected<NoPlace> exhausted(std::string message) {
-    return tl::unexpected(NoPlace{.problem = Problem::kExhausted, .message = std::move(message)});
+tl::unexpected<NoPlace> exhausted(std::string exceeded, std::string message) {
+    return tl::unexpected(
+        NoPlace{.problem = Problem::kExhausted, .exceeded = std::move(exceeded), .message = std::move(message)});
 }
 
 } // namespace
@@ -16,15 +17,17 @@ tl::unexpected<NoPlace> exhausted(std::string message) {
 tl::expected<std::uint64_t, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
     auto state = state_.lock();
     if (!state->closed_because.empty()) {
-        return tl::unexpected(NoPlace{.problem = Problem::kUnavailable, .message = state->closed_because});
+        return tl::unexpected(
+            NoPlace{.problem = Problem::kUnavailable, .exceeded = "draining", .message = state->closed_because});
     }
     if (state->places.size() >= limits_.max_sessions) {
-        return exhausted("all " + std::to_string(limits_.max_sessions) + " sessions of this server are in use");
+        return exhausted("sessions",
+                         "all " + std::to_string(limits_.max_sessions) + " sessions of this server are in use");
     }
     const auto of_peer = std::ranges::count_if(state->places, [&](const auto& p) { return p.second.peer == peer; });
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_sessions_per_peer) {
-        return exhausted("all " + std::to_string(limits_.max_sessions_per_peer) +
-                         " sessions that one peer may have are in use");
+        return exhausted("sessions_per_peer", "all " + std::to_string(limits_.max_sessions_per_peer) +
+                                                  " sessions that one peer may have are in use");
     }
     const std::uint64_t id = state->next_id++;
     state->places.emplace(id, Place{.peer = peer, .identity = identity, .stream = {}});

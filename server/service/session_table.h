@@ -17,6 +17,7 @@ namespace fieldcast::service {
 /// Why a session was not admitted.
 struct NoPlace {
     Problem problem = Problem::kExhausted;
+    std::string exceeded; ///< the limit's name, for the metrics
     std::string message;
 };
 

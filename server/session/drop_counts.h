@@ -24,6 +24,11 @@ inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames
 class DropCounts {
 public:
     void add(DropReason reason) { ++counts_[static_cast<std::size_t>(reason)]; }
+    void subtract(const DropCounts& earlier) {
+        for (std::size_t i = 0; i < kDropReasonCount; ++i) {
+            counts_[i] -= earlier.counts_[i];
+        }
+    }
     std::uint64_t of(DropReason reason) const { return counts_[static_cast<std::size_t>(reason)]; }
 
 private:

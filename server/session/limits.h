@@ -17,6 +17,7 @@ struct Limits {
     std::chrono::milliseconds configure_deadline{10'000}; ///< from opening to the first Configured
     std::chrono::milliseconds stall_deadline{30'000};     ///< a frame unacknowledged, or a message unsent
     std::chrono::milliseconds going_away_deadline{5'000}; ///< from GoingAway to the forced end
+    std::chrono::milliseconds channel_deadline{120'000};  ///< no frame although somebody waits: not healthy
     std::chrono::milliseconds heartbeat_interval{250};    ///< the protocol asks for at most 500 ms
 };
 

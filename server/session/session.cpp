@@ -53,6 +53,7 @@ void Session::handle(const v1::Configure& wanted) {
     auto chosen = negotiate(wanted, channels_, limits_);
     std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
     if (refusal) {
+        ++counts_.refusals;
         *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
         return;
     }
@@ -136,19 +137,22 @@ bool Session::is_too_soon(TimePoint now) {
     return false;
 }
 
-void Session::go_away(const std::string& reason, TimePoint at) {
+void Session::go_away(const std::string& reason, TimePoint at, CloseReason why) {
     if (!departure_ && !cut_at_) {
         departure_ = Departure{.reason = reason, .at = at};
+        close_reason_ = why;
     }
 }
 
 void Session::on_tick(TimePoint now) {
     if (!configuration_ && now >= configure_by_) {
-        go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now);
+        go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now,
+                CloseReason::kNotConfigured);
     }
     const auto oldest = credits_.oldest();
     if (oldest && now - *oldest >= limits_.stall_deadline) {
-        go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now);
+        go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now,
+                CloseReason::kStalled);
     }
 }
 
@@ -218,7 +222,23 @@ void Session::start_frame(TimePoint now) {
     }
     const feed::FramePtr encoded = *mailbox_.take();
     credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
-    sending_ = Sending{.frame = std::move(frame), .next_chunk = 0, .times = encoded->times};
+    auto plane_bytes = plane_bytes_of(*encoded, frame);
+    sending_ = Sending{
+        .frame = std::move(frame), .next_chunk = 0, .times = encoded->times, .plane_bytes = std::move(plane_bytes)};
+}
+
+std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::EncodedFrame& frame,
+                                                                   const wire::WireFrame& chunks) const {
+    std::map<wire::PlaneChoice, std::uint64_t> bytes;
+    if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+        for (const wire::PlaneChoice& choice : planes->choices) {
+            bytes[choice] = frame.source->find(choice)->encoded_bytes();
+        }
+        return bytes;
+    }
+    const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
+    bytes[{.semantic = PlaneSemantic::kColour, .codec = views.format.codec}] = chunks.payload_bytes;
+    return bytes;
 }
 
 wire::WireFrame Session::chunks_of(const feed::EncodedFrame& frame) const {
@@ -245,6 +265,9 @@ wire::WireChunk Session::next_chunk(TimePoint now) {
     wire::WireChunk trailer = wire::trailer_chunk(sending.frame, sending.times);
     counts_.bytes_sent += trailer.size();
     ++counts_.frames_sent;
+    for (const auto& [choice, bytes] : sending.plane_bytes) {
+        counts_.plane_bytes[choice] += bytes;
+    }
     credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
     sending_.reset();
     return trailer;

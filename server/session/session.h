@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "server/session/close_reason.h"
 #include "server/session/credits.h"
-#include "server/session/drop_counts.h"
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
+#include "server/session/session_counts.h"
 
 #include <deque>
 #include <optional>
@@ -12,14 +13,6 @@
 #include <vector>
 
 namespace fieldcast::session {
-
-/// What happened to one client, for its closing log line.
-struct SessionCounts {
-    std::uint64_t frames_sent = 0; ///< completely
-    std::uint64_t bytes_sent = 0;
-    std::uint64_t frames_failed = 0; ///< the client could not decode them
-    DropCounts drops;
-};
 
 /// One client: its configuration, what it is owed, and the next message to write. Knows no transport: whoever owns it
 /// hands in messages and frames, and calls next() whenever the previous message has been written.
@@ -40,7 +33,7 @@ public:
     std::optional<wire::WireChunk> next(TimePoint now);
 
     /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
-    void go_away(const std::string& reason, TimePoint at);
+    void go_away(const std::string& reason, TimePoint at, CloseReason why = CloseReason::kDrained);
 
     /// Watches deadlines; call it several times per heartbeat interval.
     void on_tick(TimePoint now);
@@ -54,6 +47,8 @@ public:
     const std::optional<Configuration>& configuration() const { return configuration_; } ///< in force
     std::uint32_t epoch() const { return epoch_; }
     const SessionCounts& counts() const { return counts_; }
+    const Credits& credits() const { return credits_; }
+    std::optional<CloseReason> close_reason() const { return close_reason_; } ///< set by go_away
 
 private:
     struct Departure {
@@ -65,6 +60,7 @@ private:
         wire::WireFrame frame;
         std::size_t next_chunk = 0;
         wire::ServerTimes times;
+        std::map<wire::PlaneChoice, std::uint64_t> plane_bytes;
     };
 
     void handle(const v1::Configure& wanted);
@@ -78,6 +74,8 @@ private:
     v1::ServerMessage heartbeat() const;
     void start_frame(TimePoint now);
     wire::WireFrame chunks_of(const feed::EncodedFrame& frame) const;
+    std::map<wire::PlaneChoice, std::uint64_t> plane_bytes_of(const feed::EncodedFrame& frame,
+                                                              const wire::WireFrame& chunks) const;
     wire::WireChunk next_chunk(TimePoint now);
 
     std::vector<std::shared_ptr<feed::Feed>> channels_;
@@ -91,6 +89,7 @@ private:
     std::deque<v1::ServerMessage> answers_;
     std::optional<Departure> departure_; ///< GoingAway is to be sent
     std::optional<TimePoint> cut_at_;    ///< set when GoingAway was sent
+    std::optional<CloseReason> close_reason_;
     TimePoint next_heartbeat_;
     TimePoint configure_by_;
     TimePoint next_frame_due_{}; ///< by the client's rate cap

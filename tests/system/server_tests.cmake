@@ -20,6 +20,12 @@ target_link_libraries(certificate_authority PRIVATE OpenSSL::Crypto GTest::gtest
 fieldcast_test(server_access_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_access_test.cpp
     DEPENDS certificate_authority fieldcast_server_access)
+add_library(http_client STATIC ${CMAKE_CURRENT_LIST_DIR}/http_client.cpp)
+target_include_directories(http_client PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(http_client PRIVATE OpenSSL::SSL OpenSSL::Crypto fieldcast_warnings)
+fieldcast_test(server_metrics_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_metrics_test.cpp
+    DEPENDS certificate_authority http_client fieldcast_server_metrics)
 fieldcast_test(server_clock_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
     DEPENDS fieldcast_server_channel)
@@ -29,6 +35,7 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
     fieldcast_test(server_service_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
     fieldcast_test(server_security_test LABELS quick
