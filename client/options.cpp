@@ -141,8 +141,8 @@ bool contains(const std::vector<std::string>& words, const char* word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-sink::Products read_products(const std::vector<std::string>& words) {
-    sink::Products products;
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    image::LightFieldProducts products;
     products.quilt = contains(words, "quilt");
     products.views = contains(words, "views");
     products.contact_sheet = contains(words, "contact-sheet");

@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/scene/bundle.h"
 #include "server/channel/channel.h"
+#include "server/channel/offline.h"
 #include "server/metrics/http_endpoint.h"
 #include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
@@ -23,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kOk = 0;
 constexpr int kMachineFailed = 1;
 constexpr int kUserError = 2;
+constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
@@ -136,6 +138,32 @@ int probe(const service::HealthQuestion& question) {
     return problem ? kMachineFailed : kOk;
 }
 
+/// Files instead of a service; several channels get a folder each.
+int render(const ops::Config& config, const ops::OfflineJob& job, const ops::StopSignals& signals) {
+    log::set_format(config.log_format);
+    log::set_level(config.log_level);
+    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
+    for (const ops::ChannelChoice& choice : config.channels) {
+        ops::OfflineJob own = job;
+        if (config.channels.size() > 1) {
+            own.out /= choice.name;
+        }
+        const auto progress = [&](const std::string& done) {
+            std::cerr << '\r' << choice.name << ": " << done << "   " << std::flush;
+            return signals.wait(std::chrono::milliseconds(0));
+        };
+        const bool is_done = channel::render_offline(device, config, choice, own, progress);
+        std::cerr << '\n';
+        if (!is_done) {
+            std::cerr << "interrupted: files that were written are complete\n";
+            return kInterrupted;
+        }
+        std::cout << own.out.string() << '\n';
+    }
+    return kOk;
+}
+
 int start(int argc, char** argv) {
     const ops::StopSignals signals; // before any thread exists
     const ops::Invocation invocation = ops::read_flags(argc, argv);
@@ -155,6 +183,8 @@ int start(int argc, char** argv) {
         return kOk;
     case ops::Invocation::Kind::kHealth:
         return probe(invocation.health);
+    case ops::Invocation::Kind::kRender:
+        return render(invocation.config, invocation.job, signals);
     case ops::Invocation::Kind::kServe:
         break;
     }

@@ -10,12 +10,12 @@ namespace fieldcast::client::net {
 /// taken up.
 struct Access {
     bool uses_tls = false;
-    std::filesystem::path tls_ca;          ///< PEM: who may have signed the server's certificate; empty: the system's
-    std::filesystem::path tls_certificate; ///< PEM: ours, for servers that ask for one; together with `tls_key`
-    std::filesystem::path tls_key;
-    std::string tls_name;             ///< the server's name in its certificate; empty: the host that is dialled
-    std::filesystem::path token_file; ///< first line that is neither empty nor a comment (#)
-    std::string token;                ///< without `token_file`; empty: none
+    std::filesystem::path tls_ca{};          ///< PEM: who may have signed the server's certificate; empty: the system's
+    std::filesystem::path tls_certificate{}; ///< PEM: ours, for servers that ask for one; together with `tls_key`
+    std::filesystem::path tls_key{};
+    std::string tls_name{};             ///< the server's name in its certificate; empty: the host that is dialled
+    std::filesystem::path token_file{}; ///< first line that is neither empty nor a comment (#)
+    std::string token{};                ///< without `token_file`; empty: none
 };
 
 /// The token of `access`; empty: none. Throws UserError, which never shows it.

@@ -131,6 +131,7 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     message.set_fovy_rad(wish.fovy_rad);
     message.set_planes(to_proto(wish.planes));
     message.set_max_frames_per_second(wish.max_frames_per_second);
+    message.set_keeps_key_frames(true);
     return message;
 }
 

@@ -2,124 +2,231 @@
 #include "core/codec/byte_filter.h"
 
 #include "core/base/error.h"
+#include "core/codec/channel_layout.h"
 
-#include <array>
-#include <bit>
-#include <cstring>
+#include <algorithm>
 #include <vector>
 
 namespace fieldcast::codec {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "pixels are little-endian in memory and on the wire");
+constexpr std::size_t kCostRowStep = 8;
 
-template <class Word> Word load(const std::byte* bytes) {
-    Word word;
-    std::memcpy(&word, bytes, sizeof word);
-    return word;
+/// ⌊(a + b) / 2⌋ without a wider type.
+template <class Lane> Lane mean(Lane a, Lane b) {
+    return static_cast<Lane>((a & b) + ((a ^ b) >> 1));
 }
 
-template <class Word> void store(std::byte* bytes, Word word) {
-    std::memcpy(bytes, &word, sizeof word);
+template <class Lane> constexpr Lane lane_mask(int bits) {
+    return static_cast<Lane>(~std::uint32_t{0} >> (32 - bits));
 }
 
-/// residual = row − up, minus the same of the pixel to the left. No value depends on another: vectorisable.
-template <class Word, std::size_t kChannels>
-void predict_row(const std::byte* row, const std::byte* up, std::size_t width, std::byte* residual) {
-    constexpr std::size_t kPixelBytes = kChannels * sizeof(Word);
-    for (std::size_t at = 0; at < kPixelBytes; at += sizeof(Word)) {
-        store(residual + at, static_cast<Word>(load<Word>(row + at) - load<Word>(up + at)));
-    }
-    for (std::size_t at = kPixelBytes; at < width * kPixelBytes; at += sizeof(Word)) {
-        const auto here = static_cast<Word>(load<Word>(row + at) - load<Word>(up + at));
-        const auto left = static_cast<Word>(load<Word>(row + at - kPixelBytes) - load<Word>(up + at - kPixelBytes));
-        store(residual + at, static_cast<Word>(here - left));
-    }
+/// Small errors of either sign → small numbers, and back. `bits` wide, modulo 2^bits.
+template <class Lane> Lane fold(Lane error, int bits) {
+    const auto sign = static_cast<Lane>(0U - (error >> (bits - 1)));
+    return static_cast<Lane>((static_cast<std::uint32_t>(error) << 1 ^ sign) & lane_mask<Lane>(bits));
 }
 
-/// One row of pixels → its part of every byte plane; the planes are `plane_stride` apart.
-template <std::size_t kPixelBytes>
-void split_row(const std::byte* row, std::size_t width, std::byte* planes, std::size_t plane_stride) {
-    if constexpr (kPixelBytes == 4) { // whole words: shifts and packs vectorise, strided byte loads do not
-        for (std::size_t b = 0; b < 4; ++b) {
-            for (std::size_t i = 0; i < width; ++i) {
-                planes[b * plane_stride + i] = static_cast<std::byte>(load<std::uint32_t>(row + 4 * i) >> (8 * b));
-            }
-        }
-    } else {
-        for (std::size_t i = 0; i < width; ++i) {
-            for (std::size_t b = 0; b < kPixelBytes; ++b) {
-                planes[b * plane_stride + i] = row[i * kPixelBytes + b];
-            }
-        }
-    }
+template <class Lane> Lane unfold(Lane folded, int bits) {
+    return static_cast<Lane>((folded >> 1 ^ (0U - (folded & 1U))) & lane_mask<Lane>(bits));
 }
 
-template <std::size_t kPixelBytes>
-void join_row(const std::byte* planes, std::size_t plane_stride, std::size_t width, std::byte* row) {
-    for (std::size_t i = 0; i < width; ++i) {
-        for (std::size_t b = 0; b < kPixelBytes; ++b) {
-            row[i * kPixelBytes + b] = planes[b * plane_stride + i];
-        }
-    }
-}
-
-/// Undoes predict_row and split_row at once: running sums per channel, plus the row above.
-template <class Word, std::size_t kChannels>
-void restore_row(const std::byte* planes, std::size_t plane_stride, const std::byte* up, std::size_t width,
-                 std::byte* row) {
-    std::array<Word, kChannels> sum{};
-    for (std::size_t i = 0; i < width; ++i) {
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            Word residual = 0;
-            for (std::size_t b = 0; b < sizeof(Word); ++b) {
-                const std::byte byte = planes[(c * sizeof(Word) + b) * plane_stride + i];
-                residual = static_cast<Word>(residual | (std::to_integer<Word>(byte) << (8 * b)));
-            }
-            sum[c] = static_cast<Word>(sum[c] + residual);
-            const std::size_t at = (i * kChannels + c) * sizeof(Word);
-            store(row + at, static_cast<Word>(sum[c] + load<Word>(up + at)));
-        }
-    }
-}
-
-/// The loops for one combination of word and channels.
-struct RowFunctions {
-    void (*predict)(const std::byte*, const std::byte*, std::size_t, std::byte*);
-    void (*split)(const std::byte*, std::size_t, std::byte*, std::size_t);
-    void (*join)(const std::byte*, std::size_t, std::size_t, std::byte*);
-    void (*restore)(const std::byte*, std::size_t, const std::byte*, std::size_t, std::byte*);
+/// One channel of one row and what it may be predicted from. `up` and `reference` may be null.
+template <class Lane> struct ChannelRow {
+    const Lane* values = nullptr;
+    const Lane* up = nullptr;
+    const Lane* reference = nullptr;
+    std::size_t width = 0;
 };
 
-template <class Word, std::size_t kChannels> constexpr RowFunctions row_functions() {
-    constexpr std::size_t kPixelBytes = kChannels * sizeof(Word);
-    return {predict_row<Word, kChannels>, split_row<kPixelBytes>, join_row<kPixelBytes>, restore_row<Word, kChannels>};
-}
-
-std::optional<RowFunctions> find_row_functions(std::uint32_t pixel_bytes, std::uint8_t word_bytes) {
-    switch (pixel_bytes * 10 + word_bytes) {
-    case 21:
-        return row_functions<std::uint8_t, 2>();
-    case 22:
-        return row_functions<std::uint16_t, 1>();
-    case 31:
-        return row_functions<std::uint8_t, 3>();
-    case 41:
-        return row_functions<std::uint8_t, 4>();
-    case 42:
-        return row_functions<std::uint16_t, 2>();
-    case 44:
-        return row_functions<std::uint32_t, 1>();
-    default:
-        return std::nullopt;
+/// Differences from the predictions, modulo the lane's range. No value depends on another: vectorisable.
+template <class Lane> void predict(Predictor predictor, const ChannelRow<Lane>& row, Lane* errors) {
+    const auto [x, up, reference, width] = row;
+    const auto set = [errors](std::size_t i, Lane value, Lane prediction) {
+        errors[i] = static_cast<Lane>(value - prediction);
+    };
+    if (predictor == Predictor::kNone) {
+        std::copy_n(x, width, errors);
+        return;
+    }
+    if (predictor == Predictor::kReference) {
+        for (std::size_t i = 0; i < width; ++i) {
+            set(i, x[i], reference[i]);
+        }
+        return;
+    }
+    const bool uses_up = predictor != Predictor::kLeft && up != nullptr;
+    set(0, x[0], uses_up ? up[0] : Lane{0});
+    for (std::size_t i = 1; i < width && !uses_up; ++i) {
+        set(i, x[i], x[i - 1]);
+    }
+    for (std::size_t i = 1; i < width && uses_up && predictor == Predictor::kGradient; ++i) {
+        set(i, x[i], static_cast<Lane>(x[i - 1] + up[i] - up[i - 1]));
+    }
+    for (std::size_t i = 1; i < width && uses_up && predictor == Predictor::kAverage; ++i) {
+        set(i, x[i], mean(x[i - 1], up[i]));
     }
 }
 
-RowFunctions checked_row_functions(ByteFilter filter, BandSize size) {
-    const auto functions = find_row_functions(size.pixel_bytes, filter.word_bytes);
-    FC_ASSERT(functions.has_value(), "filter does not fit the pixels");
-    return *functions;
+/// Undoes `predict` for all channels at once: the chains of additions of several channels run side by side.
+template <class Channels, class Predict>
+void restore(const typename Channels::Lane* errors, std::size_t width, typename Channels::Lane* x,
+             const Predict& prediction) {
+    using Lane = typename Channels::Lane;
+    std::array<Lane, Channels::kChannels> left{};
+    for (std::size_t i = 0; i < width; ++i) {
+        for (std::size_t c = 0; c < Channels::kChannels; ++c) {
+            const std::size_t at = c * width + i;
+            left[c] = static_cast<Lane>((errors[at] + prediction(left[c], at, i)) & lane_mask<Lane>(Channels::bits(c)));
+            x[at] = left[c];
+        }
+    }
+}
+
+template <class Channels>
+void restore_row(Predictor predictor, const typename Channels::Lane* errors, const typename Channels::Lane* up,
+                 const typename Channels::Lane* reference, std::size_t width, typename Channels::Lane* x) {
+    using Lane = typename Channels::Lane;
+    switch (predictor) {
+    case Predictor::kNone:
+        std::copy_n(errors, Channels::kChannels * width, x);
+        return;
+    case Predictor::kReference:
+        return restore<Channels>(errors, width, x, [=](Lane, std::size_t at, std::size_t) { return reference[at]; });
+    case Predictor::kLeft:
+        break;
+    case Predictor::kGradient:
+        if (up != nullptr) {
+            return restore<Channels>(errors, width, x, [=](Lane left, std::size_t at, std::size_t i) {
+                return static_cast<Lane>(left + up[at] - (i > 0 ? up[at - 1] : Lane{0}));
+            });
+        }
+        break;
+    case Predictor::kAverage:
+        if (up != nullptr) {
+            return restore<Channels>(errors, width, x, [=](Lane left, std::size_t at, std::size_t i) {
+                return i > 0 ? mean(left, up[at]) : up[at];
+            });
+        }
+        break;
+    }
+    restore<Channels>(errors, width, x, [](Lane left, std::size_t, std::size_t) { return left; });
+}
+
+/// A band whose pixels have that layout.
+template <class Channels> class BandFilter {
+public:
+    using Lane = typename Channels::Lane;
+
+    BandFilter(ByteFilter filter, BandSize size)
+        : filter_(filter), width_(size.width_px), rows_(size.row_count), lane_count_(Channels::kChannels * width_),
+          current_(lane_count_), above_(lane_count_), reference_(lane_count_), errors_(lane_count_) {}
+
+    void filter(const std::byte* pixels, const std::byte* reference, std::byte* filtered) {
+        for (std::size_t y = 0; y < rows_; ++y) {
+            make_errors(pixels, reference, y);
+            Channels::split(errors_.data(), width_, filtered + y * width_, width_ * rows_);
+            std::swap(current_, above_);
+        }
+    }
+
+    void unfilter(const std::byte* filtered, const std::byte* reference, std::byte* pixels) {
+        for (std::size_t y = 0; y < rows_; ++y) {
+            Channels::join(filtered + y * width_, width_ * rows_, width_, errors_.data());
+            unfold_errors();
+            load_reference(reference, y);
+            restore_row<Channels>(filter_.predictor, errors_.data(), y > 0 ? above_.data() : nullptr, reference_.data(),
+                                  width_, current_.data());
+            Channels::store(current_.data(), width_, pixels + y * row_bytes());
+            std::swap(current_, above_);
+        }
+    }
+
+    std::uint64_t cost(const std::byte* pixels, const std::byte* reference) {
+        std::uint64_t bit_count = 0;
+        filter_.is_folded = true; // whatever the filter does with them: sizes are what counts
+        for (std::size_t y = 0; y < rows_; y += kCostRowStep) {
+            if (y > 0) {
+                Channels::load(pixels + (y - 1) * row_bytes(), width_, above_.data());
+            }
+            make_errors(pixels, reference, y);
+            for (const Lane error : errors_) {
+                bit_count += static_cast<std::uint64_t>(std::bit_width(error));
+            }
+        }
+        return bit_count;
+    }
+
+private:
+    std::size_t row_bytes() const { return width_ * Channels::kPixelBytes; }
+
+    void load_reference(const std::byte* reference, std::size_t y) {
+        if (filter_.predictor == Predictor::kReference) {
+            Channels::load(reference + y * row_bytes(), width_, reference_.data());
+        }
+    }
+
+    void make_errors(const std::byte* pixels, const std::byte* reference, std::size_t y) {
+        Channels::load(pixels + y * row_bytes(), width_, current_.data());
+        load_reference(reference, y);
+        for (std::size_t c = 0; c < Channels::kChannels; ++c) {
+            const std::size_t at = c * width_;
+            predict<Lane>(filter_.predictor, {&current_[at], y > 0 ? &above_[at] : nullptr, &reference_[at], width_},
+                          &errors_[at]);
+            const int bits = Channels::bits(c);
+            for (std::size_t i = at; i < at + width_; ++i) {
+                const auto error = static_cast<Lane>(errors_[i] & lane_mask<Lane>(bits));
+                errors_[i] = filter_.is_folded ? fold(error, bits) : error;
+            }
+        }
+    }
+
+    void unfold_errors() {
+        for (std::size_t c = 0; c < Channels::kChannels && filter_.is_folded; ++c) {
+            for (std::size_t i = c * width_; i < (c + 1) * width_; ++i) {
+                errors_[i] = unfold(errors_[i], Channels::bits(c));
+            }
+        }
+    }
+
+    ByteFilter filter_;
+    std::size_t width_;
+    std::size_t rows_;
+    std::size_t lane_count_;
+    std::vector<Lane> current_;
+    std::vector<Lane> above_;
+    std::vector<Lane> reference_;
+    std::vector<Lane> errors_;
+};
+
+/// Calls `use` with a BandFilter for the filter's layout. False: no such layout for pixels of that size.
+template <class Use> bool with_channels(ByteFilter filter, BandSize size, const Use& use) {
+    switch (static_cast<int>(size.pixel_bytes * 100) + static_cast<int>(filter.layout)) {
+    case 201:
+        return use(BandFilter<WordChannels<std::uint8_t, 2>>(filter, size)), true;
+    case 202:
+        return use(BandFilter<WordChannels<std::uint16_t, 1>>(filter, size)), true;
+    case 301:
+        return use(BandFilter<WordChannels<std::uint8_t, 3>>(filter, size)), true;
+    case 303:
+        return use(BandFilter<GreenByteChannels>(filter, size)), true;
+    case 401:
+        return use(BandFilter<WordChannels<std::uint8_t, 4>>(filter, size)), true;
+    case 402:
+        return use(BandFilter<WordChannels<std::uint16_t, 2>>(filter, size)), true;
+    case 404:
+        return use(BandFilter<WordChannels<std::uint32_t, 1>>(filter, size)), true;
+    case 411:
+        return use(BandFilter<PackedFloatChannels>(filter, size)), true;
+    default:
+        return false;
+    }
+}
+
+void check_sizes(ByteFilter filter, BandSize size, std::size_t pixels, std::size_t reference) {
+    FC_ASSERT(pixels == size.bytes() && size.width_px > 0, "band sizes differ");
+    FC_ASSERT(reference == (filter.predictor == Predictor::kReference ? pixels : 0), "reference of another size");
 }
 
 } // namespace
@@ -127,61 +234,55 @@ RowFunctions checked_row_functions(ByteFilter filter, BandSize size) {
 ByteFilter filter_for(PlaneFormat format) {
     switch (format) {
     case PlaneFormat::kF32:
-        return {Predictor::kLeft, 4};
+        return {Predictor::kGradient, Layout::kWords32, true};
     case PlaneFormat::kOct2x16:
-        return {Predictor::kGradient, 2};
+        return {Predictor::kGradient, Layout::kWords16, true};
     case PlaneFormat::kU32:
-        return {Predictor::kNone, 1};
-    case PlaneFormat::kR11G11B10F: // bytewise although its fields are not bytes: 5 % smaller than raw words
+        return {Predictor::kNone, Layout::kBytes, false};
+    case PlaneFormat::kR11G11B10F:
+        return {Predictor::kAverage, Layout::kPackedFloats, true};
     case PlaneFormat::kRg8:
+        return {Predictor::kGradient, Layout::kBytes, false};
     case PlaneFormat::kRgb8:
-        return {Predictor::kGradient, 1};
+        return {Predictor::kGradient, Layout::kGreenBytes, false};
     }
     return {};
 }
 
-std::optional<ByteFilter> filter_from_numbers(PlaneFormat format, std::uint8_t predictor, std::uint8_t word_bytes) {
-    if (predictor > static_cast<std::uint8_t>(Predictor::kGradient) ||
-        !find_row_functions(bytes_per_pixel(format), word_bytes)) {
-        return std::nullopt;
-    }
-    return ByteFilter{static_cast<Predictor>(predictor), word_bytes};
+std::optional<ByteFilter> filter_from_numbers(PlaneFormat format, std::uint8_t predictor, std::uint8_t layout,
+                                              bool is_folded) {
+    const ByteFilter filter{static_cast<Predictor>(predictor), static_cast<Layout>(layout), is_folded};
+    const bool fits = with_channels(filter, {1, 1, bytes_per_pixel(format)}, [](const auto&) {}) &&
+                      (filter.layout != Layout::kPackedFloats || format == PlaneFormat::kR11G11B10F);
+    return fits && filter.predictor <= Predictor::kReference ? std::optional(filter) : std::nullopt;
 }
 
-void filter_band(ByteFilter filter, BandSize size, std::span<const std::byte> pixels, std::span<std::byte> filtered) {
-    FC_ASSERT(pixels.size() == size.bytes() && filtered.size() == size.bytes(), "band sizes differ");
-    const RowFunctions functions = checked_row_functions(filter, size);
-    const std::size_t row_bytes = std::size_t{size.width_px} * size.pixel_bytes;
-    const std::size_t plane_stride = std::size_t{size.width_px} * size.row_count;
-    const std::vector<std::byte> zeros(row_bytes);
-    std::vector<std::byte> residual(row_bytes);
-    for (std::size_t y = 0; y < size.row_count; ++y) {
-        const std::byte* row = pixels.data() + y * row_bytes;
-        const bool has_up = filter.predictor == Predictor::kGradient && y > 0;
-        if (filter.predictor != Predictor::kNone) {
-            functions.predict(row, has_up ? row - row_bytes : zeros.data(), size.width_px, residual.data());
-            row = residual.data();
-        }
-        functions.split(row, size.width_px, filtered.data() + y * size.width_px, plane_stride);
-    }
+void filter_band(ByteFilter filter, BandSize size, std::span<const std::byte> pixels,
+                 std::span<const std::byte> reference, std::span<std::byte> filtered) {
+    check_sizes(filter, size, pixels.size(), reference.size());
+    FC_ASSERT(filtered.size() == pixels.size(), "band sizes differ");
+    const bool is_known =
+        with_channels(filter, size, [&](auto band) { band.filter(pixels.data(), reference.data(), filtered.data()); });
+    FC_ASSERT(is_known, "filter does not fit the pixels");
 }
 
-void unfilter_band(ByteFilter filter, BandSize size, std::span<const std::byte> filtered, std::span<std::byte> pixels) {
-    FC_ASSERT(pixels.size() == size.bytes() && filtered.size() == size.bytes(), "band sizes differ");
-    const RowFunctions functions = checked_row_functions(filter, size);
-    const std::size_t row_bytes = std::size_t{size.width_px} * size.pixel_bytes;
-    const std::size_t plane_stride = std::size_t{size.width_px} * size.row_count;
-    const std::vector<std::byte> zeros(row_bytes);
-    for (std::size_t y = 0; y < size.row_count; ++y) {
-        std::byte* row = pixels.data() + y * row_bytes;
-        const std::byte* planes = filtered.data() + y * size.width_px;
-        if (filter.predictor == Predictor::kNone) {
-            functions.join(planes, plane_stride, size.width_px, row);
-            continue;
-        }
-        const bool has_up = filter.predictor == Predictor::kGradient && y > 0;
-        functions.restore(planes, plane_stride, has_up ? row - row_bytes : zeros.data(), size.width_px, row);
-    }
+void unfilter_band(ByteFilter filter, BandSize size, std::span<const std::byte> filtered,
+                   std::span<const std::byte> reference, std::span<std::byte> pixels) {
+    check_sizes(filter, size, pixels.size(), reference.size());
+    FC_ASSERT(filtered.size() == pixels.size(), "band sizes differ");
+    const bool is_known = with_channels(
+        filter, size, [&](auto band) { band.unfilter(filtered.data(), reference.data(), pixels.data()); });
+    FC_ASSERT(is_known, "filter does not fit the pixels");
+}
+
+std::uint64_t filter_cost(ByteFilter filter, BandSize size, std::span<const std::byte> pixels,
+                          std::span<const std::byte> reference) {
+    check_sizes(filter, size, pixels.size(), reference.size());
+    std::uint64_t cost = 0;
+    const bool is_known =
+        with_channels(filter, size, [&](auto band) { cost = band.cost(pixels.data(), reference.data()); });
+    FC_ASSERT(is_known, "filter does not fit the pixels");
+    return cost;
 }
 
 } // namespace fieldcast::codec

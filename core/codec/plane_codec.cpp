@@ -1,167 +1,103 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
 
-#include "core/codec/byte_filter.h"
+#include "core/codec/zstd_body.h"
 
 #include <algorithm>
-#include <memory>
 #include <string>
-#include <zstd.h>
 
 namespace fieldcast::codec {
 
 namespace {
 
-constexpr std::uint8_t kStripVersion = 1;
-constexpr int kZstdLevel = 1;
-constexpr std::size_t kKeptScratchBytes = 4U << 20;
-
-/// The first kStripHeaderBytes bytes of a strip; docs/protocol.md has the layout.
-struct StripHeader {
-    CodecId codec = CodecId::kRaw;
-    PlaneFormat format = PlaneFormat::kRgb8;
-    ByteFilter filter; ///< RAW: {kNone, 0}
-    std::uint32_t width_px = 0;
-    RowBand band;
-    std::uint32_t body_bytes = 0;
-};
-
-void put_u16(std::byte* at, std::uint32_t value) {
-    at[0] = static_cast<std::byte>(value);
-    at[1] = static_cast<std::byte>(value >> 8);
-}
-
-std::uint32_t get_u16(const std::byte* at) {
-    return std::to_integer<std::uint32_t>(at[0]) | std::to_integer<std::uint32_t>(at[1]) << 8;
-}
-
-void write_header(const StripHeader& header, std::byte* out) {
-    out[0] = std::byte{kStripVersion};
-    out[1] = static_cast<std::byte>(header.codec);
-    out[2] = static_cast<std::byte>(header.format);
-    out[3] = static_cast<std::byte>(header.filter.predictor);
-    out[4] = static_cast<std::byte>(header.filter.word_bytes);
-    out[5] = std::byte{0};
-    put_u16(out + 6, header.width_px);
-    put_u16(out + 8, header.band.first_row);
-    put_u16(out + 10, header.band.row_count);
-    put_u16(out + 12, header.body_bytes & 0xFFFF);
-    put_u16(out + 14, header.body_bytes >> 16);
-}
-
-Decoded<ByteFilter> read_filter(CodecId codec, PlaneFormat format, std::span<const std::byte> strip) {
-    const auto predictor = std::to_integer<std::uint8_t>(strip[3]);
-    const auto word_bytes = std::to_integer<std::uint8_t>(strip[4]);
-    if (codec == CodecId::kRaw) {
-        if (predictor != 0 || word_bytes != 0) {
-            return decode_error("strip header: RAW has no filter");
-        }
-        return ByteFilter{Predictor::kNone, 0};
-    }
-    const auto filter = filter_from_numbers(format, predictor, word_bytes);
-    if (!filter) {
-        return decode_error("strip header: predictor " + std::to_string(predictor) + " on words of " +
-                            std::to_string(word_bytes) + " bytes does not fit the format");
-    }
-    return *filter;
-}
-
-Decoded<StripHeader> read_header(std::span<const std::byte> strip) {
-    if (strip.size() < kStripHeaderBytes) {
-        return decode_error("strip: " + std::to_string(strip.size()) + " bytes, the header has 16");
-    }
-    if (strip[0] != std::byte{kStripVersion}) {
-        return decode_error("strip header: version " + std::to_string(std::to_integer<int>(strip[0])) + " is not 1");
-    }
-    const auto codec = codec_from_number(std::to_integer<std::uint8_t>(strip[1]));
-    const auto format = static_cast<PlaneFormat>(strip[2]);
-    if (!codec || bytes_per_pixel(format) == 0 || strip[5] != std::byte{0}) {
-        return decode_error("strip header: unknown codec, format or flags");
-    }
-    const auto filter = read_filter(*codec, format, strip);
-    if (!filter) {
-        return tl::unexpected(filter.error());
-    }
-    StripHeader header{*codec, format, *filter, get_u16(&strip[6]), {get_u16(&strip[8]), get_u16(&strip[10])}, 0};
-    header.body_bytes = get_u16(&strip[12]) | get_u16(&strip[14]) << 16;
-    if (header.body_bytes != strip.size() - kStripHeaderBytes) {
-        return decode_error("strip header: says " + std::to_string(header.body_bytes) + " bytes follow, there are " +
-                            std::to_string(strip.size() - kStripHeaderBytes));
-    }
-    return header;
-}
-
 bool is_inside(RowBand band, const Plane& plane) {
-    return band.row_count > 0 && band.first_row < plane.height_px &&
-           band.row_count <= plane.height_px - band.first_row;
+    return band.row_count > 0 && band.first_row < plane.height_px && band.row_count <= plane.height_px - band.first_row;
 }
 
 BandSize band_size(const Plane& plane, RowBand band) {
     return {plane.width_px, band.row_count, bytes_per_pixel(plane.format)};
 }
 
-std::size_t band_offset(const Plane& plane, RowBand band) {
-    return std::size_t{band.first_row} * plane.width_px * bytes_per_pixel(plane.format);
+/// Those bytes of a plane, or of its reference.
+template <class Bytes> auto rows_of(Bytes& bytes, const Plane& plane, RowBand band) {
+    const std::size_t row_bytes = std::size_t{plane.width_px} * bytes_per_pixel(plane.format);
+    return std::span(bytes).subspan(band.first_row * row_bytes, band.row_count * row_bytes);
 }
 
-/// Memory for one strip, reused by the next strip of this thread; large blocks are not kept.
-class Scratch {
-public:
-    explicit Scratch(std::size_t size) {
-        if (buffer().size() < size) {
-            buffer().resize(size);
-        }
-        bytes_ = std::span(buffer()).first(size);
-    }
-    ~Scratch() {
-        if (buffer().size() > kKeptScratchBytes) {
-            std::vector<std::byte>().swap(buffer());
-        }
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    std::span<std::byte> bytes() const { return bytes_; }
+bool is_complete(const Plane& plane) {
+    return plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
+}
 
-private:
-    static std::vector<std::byte>& buffer() {
-        thread_local std::vector<std::byte> instance;
-        return instance;
-    }
-    std::span<std::byte> bytes_;
+bool fits(const Plane* reference, const Plane& plane) {
+    return reference == nullptr || (reference->format == plane.format && reference->width_px == plane.width_px &&
+                                    reference->height_px == plane.height_px && is_complete(*reference));
+}
+
+/// Rows to encode, and the same rows of the reference (empty: none).
+struct Rows {
+    BandSize size;
+    std::span<const std::byte> pixels;
+    std::span<const std::byte> reference;
 };
 
-/// Appends the zstd frame of the filtered pixels to `out`, or returns false if it would be no smaller than they are.
-bool append_zstd(ByteFilter filter, BandSize size, std::span<const std::byte> pixels, std::vector<std::byte>& out) {
-    thread_local const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), &ZSTD_freeCCtx);
-    const Scratch filtered(pixels.size());
-    filter_band(filter, size, pixels, filtered.bytes());
-    const std::size_t start = out.size();
-    out.resize(start + ZSTD_compressBound(pixels.size()));
-    const std::size_t written = ZSTD_compressCCtx(context.get(), &out[start], out.size() - start,
-                                                  filtered.bytes().data(), pixels.size(), kZstdLevel);
-    FC_ASSERT(ZSTD_isError(written) == 0, "zstd refused a buffer of its own bound");
-    out.resize(start + written);
-    return written < pixels.size();
+/// The filter that needs fewer bits.
+ByteFilter choose_filter(PlaneFormat format, const Rows& rows) {
+    const ByteFilter spatial = filter_for(format);
+    if (rows.reference.empty()) {
+        return spatial;
+    }
+    ByteFilter temporal = spatial;
+    temporal.predictor = Predictor::kReference;
+    ByteFilter compared = spatial;
+    if (spatial.predictor == Predictor::kNone) { // zstd finds what repeats: that costs no bits
+        compared.predictor = Predictor::kLeft;
+    }
+    const bool is_temporal_cheaper = filter_cost(temporal, rows.size, rows.pixels, rows.reference) <
+                                     filter_cost(compared, rows.size, rows.pixels, {});
+    return is_temporal_cheaper ? temporal : spatial;
 }
 
-Decoded<void> decode_zstd(ByteFilter filter, BandSize size, std::span<const std::byte> body,
+/// Appends the body to `strip`, which consists of an unwritten header, and says in `header` what it is.
+void append_body(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
+    if (!rows.reference.empty() && std::ranges::equal(rows.pixels, rows.reference)) {
+        header.coding = StripCoding::kRepeat;
+        return;
+    }
+    if (options.codec == CodecId::kZstdFiltered) {
+        header.coding = StripCoding::kZstdFiltered;
+        header.filter = options.filter.value_or(choose_filter(header.format, rows));
+        const bool is_temporal = header.filter.predictor == Predictor::kReference;
+        if (append_zstd(header.filter, rows.size, rows.pixels,
+                        is_temporal ? rows.reference : std::span<const std::byte>(), strip)) {
+            return;
+        }
+        strip.resize(kStripHeaderBytes);
+    }
+    header.coding = StripCoding::kRaw;
+    strip.insert(strip.end(), rows.pixels.begin(), rows.pixels.end());
+}
+
+Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> body, const Rows& rows,
                           std::span<std::byte> pixels) {
-    thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
-    if (ZSTD_getFrameContentSize(body.data(), body.size()) != pixels.size()) {
-        return decode_error("strip: zstd frame does not declare the " + std::to_string(pixels.size()) +
-                            " bytes of its rows");
+    const bool is_temporal = header.filter.predictor == Predictor::kReference;
+    switch (header.coding) {
+    case StripCoding::kZstdFiltered:
+        return decode_zstd(header.filter, rows.size, body, is_temporal ? rows.reference : std::span<const std::byte>(),
+                           pixels);
+    case StripCoding::kRepeat:
+        if (!body.empty()) {
+            return decode_error("strip: a repetition has no bytes");
+        }
+        std::ranges::copy(rows.reference, pixels.begin());
+        return {};
+    case StripCoding::kRaw:
+        break;
     }
-    if (ZSTD_findFrameCompressedSize(body.data(), body.size()) != body.size()) {
-        return decode_error("strip: not exactly one zstd frame");
+    if (body.size() != pixels.size()) {
+        return decode_error("strip: " + std::to_string(body.size()) + " raw bytes, its rows have " +
+                            std::to_string(pixels.size()));
     }
-    const Scratch filtered(pixels.size());
-    const std::size_t read = ZSTD_decompressDCtx(context.get(), filtered.bytes().data(), pixels.size(), body.data(),
-                                                 body.size());
-    if (read != pixels.size()) {
-        return decode_error(std::string("strip: zstd: ") +
-                            (ZSTD_isError(read) != 0 ? ZSTD_getErrorName(read) : "too few bytes"));
-    }
-    unfilter_band(filter, size, filtered.bytes(), pixels);
+    std::ranges::copy(body, pixels.begin());
     return {};
 }
 
@@ -188,28 +124,31 @@ std::uint64_t max_strip_bytes(PlaneFormat format, std::uint32_t width_px, std::u
     return kStripHeaderBytes + plane_bytes(format, width_px, row_count);
 }
 
-std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, CodecId codec) {
+std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const StripOptions& options) {
     FC_ASSERT(is_inside(band, plane), "rows outside the plane");
-    FC_ASSERT(plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px), "plane size");
+    FC_ASSERT(is_complete(plane), "plane size");
     FC_ASSERT(plane.width_px <= kMaxPlaneSide && plane.height_px <= kMaxPlaneSide, "plane too large for the wire");
-    const BandSize size = band_size(plane, band);
-    const auto pixels = std::span(plane.bytes).subspan(band_offset(plane, band), size.bytes());
-    StripHeader header{codec, plane.format, filter_for(plane.format), plane.width_px, band, 0};
-    std::vector<std::byte> strip(kStripHeaderBytes);
-    if (codec == CodecId::kRaw || !append_zstd(header.filter, size, pixels, strip)) {
-        header.codec = CodecId::kRaw;
-        header.filter = {Predictor::kNone, 0};
-        strip.resize(kStripHeaderBytes);
-        strip.insert(strip.end(), pixels.begin(), pixels.end());
+    FC_ASSERT(fits(options.reference, plane), "reference of another size or format");
+    Rows rows{band_size(plane, band), rows_of(plane.bytes, plane, band), {}};
+    if (options.reference != nullptr) {
+        rows.reference = rows_of(options.reference->bytes, plane, band);
     }
-    header.body_bytes = static_cast<std::uint32_t>(strip.size() - kStripHeaderBytes);
-    write_header(header, strip.data());
+    StripHeader header{.format = plane.format, .width_px = plane.width_px, .band = band};
+    std::vector<std::byte> strip(kStripHeaderBytes);
+    append_body(rows, options, header, strip);
+    write_header(header, strip);
     strip.shrink_to_fit();
     return strip;
 }
 
-Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, Plane& plane) {
-    FC_ASSERT(plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px), "plane size");
+bool needs_reference(std::span<const std::byte> strip) {
+    const auto header = read_header(strip);
+    FC_ASSERT(header.has_value(), "not a strip");
+    return header->needs_reference();
+}
+
+Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Plane* reference, Plane& plane) {
+    FC_ASSERT(is_complete(plane) && fits(reference, plane), "plane size");
     if (!is_inside(band, plane)) {
         return decode_error("strip: rows outside the plane");
     }
@@ -220,18 +159,14 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, Plane
     if (header->format != plane.format || header->width_px != plane.width_px || header->band != band) {
         return decode_error("strip header: format, width or rows differ from what was announced");
     }
-    const BandSize size = band_size(plane, band);
-    const auto pixels = std::span(plane.bytes).subspan(band_offset(plane, band), size.bytes());
-    const auto body = strip.subspan(kStripHeaderBytes);
-    if (header->codec == CodecId::kZstdFiltered) {
-        return decode_zstd(header->filter, size, body, pixels);
+    if (header->needs_reference() && reference == nullptr) {
+        return decode_error("strip: refers to another frame, its frame does not");
     }
-    if (body.size() != pixels.size()) {
-        return decode_error("strip: " + std::to_string(body.size()) + " raw bytes, its rows have " +
-                            std::to_string(pixels.size()));
+    Rows rows{band_size(plane, band), {}, {}};
+    if (reference != nullptr) {
+        rows.reference = rows_of(reference->bytes, plane, band);
     }
-    std::ranges::copy(body, pixels.begin());
-    return {};
+    return decode_body(*header, strip.subspan(kStripHeaderBytes), rows, rows_of(plane.bytes, plane, band));
 }
 
 Decoded<Plane> allocate_plane(PlaneSemantic semantic, PlaneFormat format, std::uint32_t width_px,

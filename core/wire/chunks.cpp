@@ -45,8 +45,11 @@ v1::FrameChunk next_chunk(const WireFrame& frame) {
     return chunk;
 }
 
-void append_strip(WireFrame& frame, std::uint32_t part, const EncodedStrip& strip, std::uint32_t chunk_bytes) {
-    const std::span<const std::byte> bytes(*strip.bytes);
+void append_strip(WireFrame& frame, std::uint32_t part, const EncodedStrip& strip, const ChunkOptions& options) {
+    const StripBytes& form = options.has_key_frame ? strip.best : strip.alone;
+    FC_ASSERT(form.bytes != nullptr, "a strip that stands alone was not encoded");
+    const std::span<const std::byte> bytes(*form.bytes);
+    const std::uint32_t chunk_bytes = options.chunk_bytes;
     for (std::size_t offset = 0; offset < bytes.size(); offset += chunk_bytes) {
         const auto payload = bytes.subspan(offset, std::min<std::size_t>(chunk_bytes, bytes.size() - offset));
         v1::FrameChunk chunk = next_chunk(frame);
@@ -56,24 +59,27 @@ void append_strip(WireFrame& frame, std::uint32_t part, const EncodedStrip& stri
         slice.set_row_count(strip.band.row_count);
         slice.set_strip_bytes(static_cast<std::uint32_t>(bytes.size()));
         slice.set_slice_offset(static_cast<std::uint32_t>(offset));
-        frame.chunks.push_back({make_head(chunk, payload.size()), strip.bytes, payload});
+        frame.chunks.push_back({make_head(chunk, payload.size()), form.bytes, payload});
     }
-    frame.crc32c = codec::crc32c_combine(frame.crc32c, strip.crc32c, bytes.size());
+    frame.crc32c = codec::crc32c_combine(frame.crc32c, form.crc32c, bytes.size());
     frame.payload_bytes += bytes.size();
 }
 
-void append_plane(WireFrame& frame, std::uint32_t part, const EncodedPlane& plane, std::uint32_t chunk_bytes) {
+void append_plane(WireFrame& frame, std::uint32_t part, const EncodedPlane& plane, const ChunkOptions& options) {
     for (const EncodedStrip& strip : plane.strips) {
-        append_strip(frame, part, strip, chunk_bytes);
+        append_strip(frame, part, strip, options);
     }
 }
 
-WireFrame begin_frame(const FrameHeader& header, const ChunkOptions& options, v1::FrameHeader& message) {
+WireFrame begin_frame(const FrameHeader& header, std::uint64_t key_frame_id, const ChunkOptions& options,
+                      v1::FrameHeader& message) {
     FC_ASSERT(options.chunk_bytes > 0 && options.chunk_bytes <= kMaxChunkBytes, "chunk size");
     WireFrame frame;
     frame.frame_id = header.frame_id;
     frame.epoch = options.epoch;
+    frame.key_frame_id = options.has_key_frame ? key_frame_id : 0;
     to_proto(header, message);
+    message.set_key_frame_id(frame.key_frame_id);
     return frame;
 }
 
@@ -94,7 +100,7 @@ std::string joined(const WireChunk& chunk) {
 WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice> choices,
                         const ChunkOptions& options) {
     v1::FrameHeader message;
-    WireFrame frame = begin_frame(source.header, options, message);
+    WireFrame frame = begin_frame(source.header, source.key_frame_id, options, message);
     std::vector<const EncodedPlane*> planes;
     for (const PlaneChoice choice : choices) {
         const EncodedPlane* plane = source.find(choice);
@@ -109,7 +115,7 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
     }
     append_header(frame, std::move(message));
     for (std::uint32_t part = 0; part < planes.size(); ++part) {
-        append_plane(frame, part, *planes[part], options.chunk_bytes);
+        append_plane(frame, part, *planes[part], options);
     }
     return frame;
 }
@@ -118,7 +124,7 @@ WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const Chu
     const ViewFormat& format = views.format;
     FC_ASSERT(grid.geometry == format.geometry, "grid of another lattice");
     v1::FrameHeader message;
-    WireFrame frame = begin_frame(views.header, options, message);
+    WireFrame frame = begin_frame(views.header, views.key_frame_id, options, message);
     const ViewSet set{grid, format.width_px, format.height_px, format.fovy_rad};
     to_proto(set, *message.mutable_views()->mutable_view_set());
     message.mutable_views()->set_codec(to_proto(format.codec));
@@ -127,7 +133,7 @@ WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const Chu
     for (const LatticePosition position : lattice_positions(grid)) {
         const auto view = views.views.find(position);
         FC_ASSERT(view != views.views.end(), "a view was asked for that was not encoded");
-        append_plane(frame, part, view->second.image, options.chunk_bytes);
+        append_plane(frame, part, view->second.image, options);
         frame.discards.push_back(view->second.discards);
         ++part;
     }

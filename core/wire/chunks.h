@@ -34,6 +34,7 @@ inline constexpr std::uint32_t kMaxChunkBytes = 2U << 20;
 struct ChunkOptions {
     std::uint32_t epoch = 1;
     std::uint32_t chunk_bytes = kDefaultChunkBytes; ///< largest payload
+    bool has_key_frame = true; ///< the client has what the frame refers to; false: it gets strips that stand alone
 };
 
 /// Server's steady clock, nanoseconds; 0: unknown.
@@ -52,16 +53,19 @@ struct ServerTimes {
 struct WireFrame {
     std::uint64_t frame_id = 0;
     std::uint32_t epoch = 0;
-    std::vector<WireChunk> chunks; ///< header, then strips
+    std::uint64_t key_frame_id = 0; ///< that it refers to; may be its own; 0: none
+    std::vector<WireChunk> chunks;  ///< header, then strips
     std::vector<DiscardCounts> discards;
     std::uint64_t payload_bytes = 0;
     std::uint32_t crc32c = 0; ///< over all payloads
 };
 
-/// A source frame with the chosen planes, in that order. Each choice must have been encoded.
+/// A source frame with the chosen planes, in that order. Each choice must have been encoded, to stand alone if the
+/// client lacks the key frame.
 WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice> choices, const ChunkOptions& options);
 
-/// The views of `grid`, row-major. Its geometry must be that of `views`, and every position must have been encoded.
+/// The views of `grid`, row-major. Its geometry must be that of `views`, and every position must have been encoded, to
+/// stand alone if the client lacks the key frame.
 WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const ChunkOptions& options);
 
 WireChunk trailer_chunk(const WireFrame& frame, const ServerTimes& times);

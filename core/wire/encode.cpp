@@ -16,11 +16,29 @@ EncodedPlane without_strips(const Plane& plane, codec::CodecId codec) {
     return {plane.semantic, plane.format, codec, plane.width_px, plane.height_px, {}};
 }
 
-/// A plane to encode and where to put its strips.
+/// A plane to encode, what it may refer to, and where to put its strips.
 struct Job {
     const Plane* plane = nullptr;
+    const Plane* reference = nullptr; ///< null: none
+    bool is_reference_optional = false;
     EncodedPlane* encoded = nullptr;
 };
+
+StripBytes share(std::vector<std::byte> bytes) {
+    const std::uint32_t crc32c = codec::crc32c(bytes);
+    return {std::make_shared<const std::vector<std::byte>>(std::move(bytes)), crc32c};
+}
+
+void encode_strip(const Job& job, EncodedStrip& strip) {
+    codec::StripOptions options{.codec = job.encoded->codec, .reference = job.reference};
+    strip.best = share(codec::encode_strip(*job.plane, strip.band, options));
+    if (!codec::needs_reference(*strip.best.bytes)) {
+        strip.alone = strip.best;
+    } else if (job.is_reference_optional) {
+        options.reference = nullptr;
+        strip.alone = share(codec::encode_strip(*job.plane, strip.band, options));
+    }
+}
 
 /// Encodes all strips of all planes as one loop, so that threads stay busy to the end.
 void encode_all(std::span<const Job> jobs, WorkerPool& pool) {
@@ -32,16 +50,28 @@ void encode_all(std::span<const Job> jobs, WorkerPool& pool) {
     for (const Job& job : jobs) {
         for (const codec::RowBand band : codec::strip_bands(job.plane->height_px)) {
             items.push_back({job, job.encoded->strips.size()});
-            job.encoded->strips.push_back({band, nullptr, 0});
+            job.encoded->strips.push_back({.band = band});
         }
     }
     pool.for_each(items.size(), [&items](std::size_t i) {
         const auto& [job, index] = items[i];
-        EncodedStrip& strip = job.encoded->strips[index];
-        auto bytes = codec::encode_strip(*job.plane, strip.band, job.encoded->codec);
-        strip.crc32c = codec::crc32c(bytes);
-        strip.bytes = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+        encode_strip(job, job.encoded->strips[index]);
     });
+}
+
+/// The plane that `plane` may refer to; null if the key frame has none of its kind.
+const Plane* fitting(const Plane* reference, const Plane& plane) {
+    const bool fits = reference != nullptr && reference->format == plane.format &&
+                      reference->width_px == plane.width_px && reference->height_px == plane.height_px;
+    return fits ? reference : nullptr;
+}
+
+const Plane* find_view(const Views* views, LatticePosition position) {
+    if (views == nullptr) {
+        return nullptr;
+    }
+    const auto found = std::ranges::find(views->views, position, &View::position);
+    return found == views->views.end() ? nullptr : &found->image;
 }
 
 } // namespace
@@ -49,16 +79,13 @@ void encode_all(std::span<const Job> jobs, WorkerPool& pool) {
 std::uint64_t EncodedPlane::encoded_bytes() const {
     std::uint64_t sum = 0;
     for (const EncodedStrip& strip : strips) {
-        sum += strip.bytes->size();
+        sum += strip.best.bytes->size();
     }
     return sum;
 }
 
-EncodedPlane encode_plane(const Plane& plane, codec::CodecId codec, WorkerPool& pool) {
-    EncodedPlane encoded = without_strips(plane, codec);
-    const Job job{&plane, &encoded};
-    encode_all(std::span(&job, 1), pool);
-    return encoded;
+bool EncodedPlane::stands_alone() const {
+    return std::ranges::all_of(strips, [](const EncodedStrip& strip) { return strip.alone.bytes != nullptr; });
 }
 
 const EncodedPlane* EncodedSource::find(PlaneChoice choice) const {
@@ -68,28 +95,33 @@ const EncodedPlane* EncodedSource::find(PlaneChoice choice) const {
     return found == planes.end() ? nullptr : &*found;
 }
 
-EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoice> choices, WorkerPool& pool) {
+EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoice> choices, const KeyFrame& key,
+                            WorkerPool& pool) {
     const auto begin = Clock::now();
     const std::set<PlaneChoice> distinct(choices.begin(), choices.end());
     EncodedSource source;
     source.header = frame.header;
+    source.key_frame_id = key.frame_id;
     source.planes.reserve(distinct.size()); // jobs point into it
     std::vector<Job> jobs;
     for (const PlaneChoice choice : distinct) {
         const Plane* plane = frame.find(choice.semantic);
         FC_ASSERT(plane != nullptr, "a plane was chosen that the frame does not have");
-        jobs.push_back({plane, &source.planes.emplace_back(without_strips(*plane, choice.codec))});
+        const Plane* reference = key.source != nullptr ? key.source->find(choice.semantic) : nullptr;
+        jobs.push_back({plane, fitting(reference, *plane), key.is_optional,
+                        &source.planes.emplace_back(without_strips(*plane, choice.codec))});
     }
     encode_all(jobs, pool);
     source.encode_time = Clock::now() - begin;
     return source;
 }
 
-EncodedViews encode_views(const Views& views, const ViewFormat& format, WorkerPool& pool) {
+EncodedViews encode_views(const Views& views, const ViewFormat& format, const KeyFrame& key, WorkerPool& pool) {
     const auto begin = Clock::now();
     EncodedViews encoded;
     encoded.header = views.header;
     encoded.format = format;
+    encoded.key_frame_id = key.frame_id;
     std::vector<Job> jobs;
     for (const View& view : views.views) {
         FC_ASSERT(view.image.semantic == PlaneSemantic::kColour && view.image.format == PlaneFormat::kRgb8 &&
@@ -98,7 +130,8 @@ EncodedViews encode_views(const Views& views, const ViewFormat& format, WorkerPo
         const auto [entry, is_new] = encoded.views.try_emplace(view.position);
         FC_ASSERT(is_new, "two views at one lattice position");
         entry->second = {without_strips(view.image, format.codec), view.discards};
-        jobs.push_back({&view.image, &entry->second.image});
+        jobs.push_back({&view.image, fitting(find_view(key.views, view.position), view.image), key.is_optional,
+                        &entry->second.image});
     }
     encode_all(jobs, pool);
     encoded.encode_time = Clock::now() - begin;

@@ -37,6 +37,8 @@ struct FrameAssembler::Frame {
     FrameHeader header;
     std::optional<ViewSet> set; ///< of a frame of views
     std::vector<Part> parts;
+    std::uint64_t key_frame_id = 0;                 ///< as in the header
+    const std::vector<Plane>* key_planes = nullptr; ///< what strips may refer to; null: nothing
     std::uint32_t next_index = 1;
     std::optional<Strip> open;    ///< strip of which slices are missing
     std::vector<Strip> undecoded; ///< complete strips
@@ -45,9 +47,11 @@ struct FrameAssembler::Frame {
     std::chrono::nanoseconds decode_time{0};
 
     static Decoded<std::unique_ptr<Frame>> begin(const v1::FrameChunk& chunk, const FrameLimits& limits);
+    Decoded<void> refer_to(const std::vector<Plane>& planes);
     Decoded<void> add_slice(v1::FrameChunk& chunk);
     Decoded<void> open_strip(const v1::StripSlice& slice);
     Decoded<void> decode_strips(WorkerPool* pool);
+    Decoded<void> check_complete(const v1::FrameTrailer& trailer) const;
     Decoded<ReceivedFrame> finish(const v1::FrameTrailer& trailer, std::uint32_t epoch);
 };
 
@@ -62,6 +66,7 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
     }
     auto frame = std::make_unique<Frame>();
     frame->header = std::move(*header);
+    frame->key_frame_id = chunk.header().key_frame_id();
     if (chunk.header().has_views()) {
         const auto set = from_proto(chunk.header().views().view_set());
         if (!set) {
@@ -78,6 +83,18 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
     return frame;
 }
 
+Decoded<void> FrameAssembler::Frame::refer_to(const std::vector<Plane>& planes) {
+    const auto is_alike = [](const Part& part, const Plane& plane) {
+        return part.semantic == plane.semantic && part.format == plane.format && part.width_px == plane.width_px &&
+               part.height_px == plane.height_px;
+    };
+    if (!std::ranges::equal(parts, planes, is_alike)) {
+        return decode_error("header.key_frame_id: that frame had other planes");
+    }
+    key_planes = &planes;
+    return {};
+}
+
 Decoded<void> FrameAssembler::Frame::open_strip(const v1::StripSlice& slice) {
     if (slice.part() >= parts.size()) {
         return decode_error("strip.part: " + std::to_string(slice.part()) + ", the frame has " +
@@ -87,9 +104,8 @@ Decoded<void> FrameAssembler::Frame::open_strip(const v1::StripSlice& slice) {
     if (slice.first_row() != part.next_row || slice.row_count() == 0 ||
         slice.row_count() > part.height_px - part.next_row) {
         return decode_error("strip: rows " + std::to_string(slice.first_row()) + " + " +
-                            std::to_string(slice.row_count()) + " of part " + std::to_string(slice.part()) +
-                            ", row " + std::to_string(part.next_row) + " of " + std::to_string(part.height_px) +
-                            " is next");
+                            std::to_string(slice.row_count()) + " of part " + std::to_string(slice.part()) + ", row " +
+                            std::to_string(part.next_row) + " of " + std::to_string(part.height_px) + " is next");
     }
     const std::uint64_t most = codec::max_strip_bytes(part.format, part.width_px, slice.row_count());
     if (slice.strip_bytes() < codec::kStripHeaderBytes || slice.strip_bytes() > most || slice.slice_offset() != 0) {
@@ -146,7 +162,8 @@ Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
     std::vector<Decoded<void>> results(undecoded.size());
     const auto decode_one = [&](std::size_t i) {
         const Strip& strip = undecoded[i];
-        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, parts[strip.part].plane);
+        const Plane* reference = key_planes != nullptr ? &(*key_planes)[strip.part] : nullptr;
+        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, reference, parts[strip.part].plane);
     };
     if (pool != nullptr) {
         pool->for_each(undecoded.size(), decode_one);
@@ -160,7 +177,7 @@ Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
     return failed == results.end() ? Decoded<void>{} : *failed;
 }
 
-Decoded<ReceivedFrame> FrameAssembler::Frame::finish(const v1::FrameTrailer& trailer, std::uint32_t epoch) {
+Decoded<void> FrameAssembler::Frame::check_complete(const v1::FrameTrailer& trailer) const {
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (parts[i].next_row != parts[i].height_px) {
             return decode_error("trailer: part " + std::to_string(i) + " ends at row " +
@@ -170,6 +187,10 @@ Decoded<ReceivedFrame> FrameAssembler::Frame::finish(const v1::FrameTrailer& tra
     if (trailer.crc32c() != crc32c) {
         return decode_error("trailer.crc32c: payload was damaged");
     }
+    return {};
+}
+
+Decoded<ReceivedFrame> FrameAssembler::Frame::finish(const v1::FrameTrailer& trailer, std::uint32_t epoch) {
     ReceivedFrame received;
     received.epoch = epoch;
     received.server_times = from_proto(trailer.times());
@@ -208,6 +229,7 @@ void FrameAssembler::begin_epoch(std::uint32_t epoch, const FrameLimits& limits)
     epoch_ = epoch;
     limits_ = limits;
     frame_.reset();
+    key_.reset();
     last_frame_id_.reset();
     skipped_id_.reset();
 }
@@ -241,12 +263,9 @@ Decoded<std::optional<ReceivedFrame>> FrameAssembler::add_to_frame(v1::FrameChun
         return tl::unexpected(checked.error());
     }
     if (chunk.has_header()) {
-        last_frame_id_ = chunk.frame_id();
-        auto frame = Frame::begin(chunk, limits_);
-        if (!frame) {
-            return tl::unexpected(frame.error());
+        if (auto begun = begin_frame(chunk); !begun) {
+            return tl::unexpected(begun.error());
         }
-        frame_ = std::move(*frame);
         return std::nullopt;
     }
     ++frame_->next_index;
@@ -265,12 +284,46 @@ Decoded<std::optional<ReceivedFrame>> FrameAssembler::add_to_frame(v1::FrameChun
     if (!chunk.has_trailer()) {
         return std::nullopt;
     }
+    if (auto checked = frame_->check_complete(chunk.trailer()); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    keep_key_frame();
     auto received = frame_->finish(chunk.trailer(), epoch_);
     if (!received) {
         return tl::unexpected(received.error());
     }
     received->decode_time = frame_->decode_time;
     return std::move(*received);
+}
+
+Decoded<void> FrameAssembler::begin_frame(const v1::FrameChunk& chunk) {
+    last_frame_id_ = chunk.frame_id();
+    auto frame = Frame::begin(chunk, limits_);
+    if (!frame) {
+        return tl::unexpected(frame.error());
+    }
+    const std::uint64_t key_frame_id = (*frame)->key_frame_id;
+    if (key_frame_id != 0 && key_frame_id != chunk.frame_id()) {
+        if (!key_ || key_->frame_id != key_frame_id) {
+            return decode_error("header.key_frame_id: " + std::to_string(key_frame_id) + " is not the last key frame" +
+                                (key_ ? ", " + std::to_string(key_->frame_id) + " is" : ": there is none"));
+        }
+        if (auto refers = (*frame)->refer_to(key_->planes); !refers) {
+            return refers;
+        }
+    }
+    frame_ = std::move(*frame);
+    return {};
+}
+
+void FrameAssembler::keep_key_frame() {
+    if (frame_->key_frame_id != frame_->header.frame_id) {
+        return;
+    }
+    key_ = Key{frame_->key_frame_id, {}};
+    for (const Part& part : frame_->parts) {
+        key_->planes.push_back(part.plane);
+    }
 }
 
 Decoded<void> FrameAssembler::check_order(const v1::FrameChunk& chunk) const {

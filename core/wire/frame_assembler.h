@@ -51,7 +51,7 @@ struct ReceivedFrame {
 
 /// Puts the chunks of one stream together, in the order in which they arrive, and decodes strips as they complete.
 /// Not thread-safe. Hostile input gives DecodeErrors, never a crash or more memory than the limits allow
-/// (decoded frame + one encoded strip per pool thread + scratch of decode_strip).
+/// (decoded frame + planes of the last key frame + one encoded strip per pool thread + scratch of decode_strip).
 ///
 ///     assembler.begin_epoch(configured.epoch(), limits);
 ///     auto added = assembler.add(std::move(*message.mutable_frame_chunk()));
@@ -63,7 +63,7 @@ public:
     explicit FrameAssembler(WorkerPool* pool = nullptr);
     ~FrameAssembler();
 
-    /// Frames of this epoch follow. Drops an unfinished frame; frame ids start anew.
+    /// Frames of this epoch follow. Drops an unfinished frame and the key frame; frame ids start anew.
     void begin_epoch(std::uint32_t epoch, const FrameLimits& limits);
 
     /// The frame, if `chunk` was its trailer; nothing while it is incomplete or skipped.
@@ -74,8 +74,14 @@ public:
 
 private:
     struct Frame;
+    struct Key { ///< the last key frame
+        std::uint64_t frame_id = 0;
+        std::vector<Plane> planes; ///< by part
+    };
+    Decoded<void> begin_frame(const v1::FrameChunk& chunk);
     Decoded<std::optional<ReceivedFrame>> add_to_frame(v1::FrameChunk& chunk);
     Decoded<void> check_order(const v1::FrameChunk& chunk) const;
+    void keep_key_frame();
 
     std::unique_ptr<Frame> frame_; ///< in progress, or null
     WorkerPool* pool_;
@@ -83,6 +89,7 @@ private:
     std::uint32_t epoch_ = 0;
     std::optional<std::uint64_t> last_frame_id_; ///< newest header seen in this epoch
     std::optional<std::uint64_t> skipped_id_;    ///< chunks of this frame are ignored
+    std::optional<Key> key_;
 };
 
 } // namespace fieldcast::wire

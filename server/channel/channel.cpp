@@ -85,13 +85,15 @@ bool Channel::wait_for_demand(const std::stop_token& stop) {
 }
 
 void Channel::encode_loop(const std::stop_token& stop) {
-    WorkerPool pool;
-    while (const auto frame = rendered_.take(stop)) {
+    FrameEncoder encoder;
+    while (auto frame = rendered_.take(stop)) {
         const auto begin = Clock::now();
-        const feed::FramePtr encoded = encode(*frame, pool);
+        const feed::FramePtr encoded = encoder.encode(std::move(*frame), begin);
         const std::chrono::duration<double, std::milli> encode_time = Clock::now() - begin;
         metrics_.observe_encoding(encode_time);
-        log::debug("frame encoded", {{"frame", frame->header.frame_id}, {"ms", encode_time.count()}});
+        log::debug(
+            "frame encoded",
+            {{"frame", encoded->header.frame_id}, {"key_frame", encoded->key_frame_id}, {"ms", encode_time.count()}});
         feed_->publish(encoded);
     }
 }

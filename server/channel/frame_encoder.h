@@ -3,11 +3,29 @@
 
 #include "core/base/parallel.h"
 #include "server/channel/frame_renderer.h"
+#include "server/channel/key_frames.h"
 #include "server/feed/encoded_frame.h"
+
+#include <memory>
 
 namespace fieldcast::channel {
 
-/// Encodes every plane and every view once per codec wanted.
-feed::FramePtr encode(const RenderedFrame& frame, WorkerPool& pool);
+/// Encodes the frames of one channel, one after the other: every plane and every view once per codec wanted. Keeps the
+/// last key frame, to which strips of later ones refer. Not thread-safe; uses all cores.
+class FrameEncoder {
+public:
+    using TimePoint = KeyFrames::TimePoint;
+
+    /// `now` decides on key frames.
+    feed::FramePtr encode(RenderedFrame frame, TimePoint now);
+
+private:
+    /// What the planes of `frame` may refer to; views differ by their format.
+    wire::KeyFrame key_for(const RenderedFrame& frame, bool is_key) const;
+
+    WorkerPool pool_;
+    KeyFrames key_frames_;
+    std::unique_ptr<const RenderedFrame> key_; ///< null before the first
+};
 
 } // namespace fieldcast::channel

@@ -20,6 +20,17 @@ bool covers(const EncodedFrame& frame, const ViewsWish& wish) {
            });
 }
 
+bool stands_alone(const EncodedFrame& frame, const PlanesWish& wish) {
+    return std::ranges::all_of(
+        wish.choices, [&](const wire::PlaneChoice& choice) { return frame.source->find(choice)->stands_alone(); });
+}
+
+bool stands_alone(const EncodedFrame& frame, const ViewsWish& wish) {
+    const wire::EncodedViews& views = *find_views(frame, wish.format);
+    return std::ranges::all_of(lattice_positions(wish.grid),
+                               [&](LatticePosition position) { return views.views.at(position).image.stands_alone(); });
+}
+
 } // namespace
 
 const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::ViewFormat& format) {
@@ -29,6 +40,10 @@ const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::View
 
 bool covers(const EncodedFrame& frame, const Wish& wish) {
     return std::visit([&](const auto& kind) { return covers(frame, kind); }, wish);
+}
+
+bool stands_alone(const EncodedFrame& frame, const Wish& wish) {
+    return std::visit([&](const auto& kind) { return stands_alone(frame, kind); }, wish);
 }
 
 } // namespace fieldcast::feed

@@ -13,7 +13,8 @@ namespace fieldcast::feed {
 /// One frame of a channel in every form that some client wanted when it was rendered. Never changed once published.
 struct EncodedFrame {
     FrameHeader header;
-    wire::ServerTimes times; ///< without the send times, which differ between clients
+    wire::ServerTimes times;        ///< without the send times, which differ between clients
+    std::uint64_t key_frame_id = 0; ///< that strips may refer to; its own id: it is a key frame; 0: there is none
     std::optional<wire::EncodedSource> source;
     std::vector<wire::EncodedViews> views;
 };
@@ -25,5 +26,8 @@ const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::View
 
 /// Whether everything in `wish` is in `frame`. A frame begun before a client changed its wish may lack something.
 bool covers(const EncodedFrame& frame, const Wish& wish);
+
+/// Whether a client without the key frame can be given everything in `wish`, which the frame covers.
+bool stands_alone(const EncodedFrame& frame, const Wish& wish);
 
 } // namespace fieldcast::feed

@@ -51,6 +51,10 @@ std::optional<std::string> Feed::change(std::uint64_t id, const Wish& wish) {
     return std::nullopt;
 }
 
+void Feed::set_key_need(std::uint64_t id, KeyNeed need) {
+    state_.lock()->subscribers.at(id).key_need = need;
+}
+
 void Feed::remove(std::uint64_t id) {
     Subscriber removed; // destroyed after the lock is released
     auto state = state_.lock();
@@ -64,6 +68,7 @@ Demand Feed::demand() {
     auto state = state_.lock();
     for (const auto& [id, subscriber] : state->subscribers) {
         add(demand, subscriber.wish);
+        add(demand, subscriber.key_need);
     }
     return demand;
 }

@@ -65,6 +65,7 @@ private:
     friend class Subscription;
     struct Subscriber {
         Wish wish;
+        KeyNeed key_need = KeyNeed::kAlone;
         std::shared_ptr<const FrameCallback> callback;
     };
     struct State {
@@ -76,6 +77,7 @@ private:
 
     std::optional<std::string> budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const;
     std::optional<std::string> change(std::uint64_t id, const Wish& wish);
+    void set_key_need(std::uint64_t id, KeyNeed need);
     void remove(std::uint64_t id);
 
     const ChannelInfo info_;
@@ -98,6 +100,9 @@ public:
     /// Another wish from the next frame on. On failure the old one stays; the reason names the limit.
     std::optional<std::string> change(const Wish& wish) { return feed_->change(id_, wish); }
     void end();
+
+    /// From the next frame on; kAlone at first.
+    void set_key_need(KeyNeed need) { feed_->set_key_need(id_, need); }
 
 private:
     friend class Feed;

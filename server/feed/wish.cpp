@@ -33,6 +33,11 @@ void add(Demand& demand, const Wish& wish) {
     std::visit([&](const auto& kind) { add(demand, kind); }, wish);
 }
 
+void add(Demand& demand, KeyNeed need) {
+    demand.needs_alone = demand.needs_alone || need != KeyNeed::kNone;
+    demand.needs_key = demand.needs_key || need == KeyNeed::kKey;
+}
+
 std::uint64_t Demand::view_pixels() const {
     std::uint64_t pixels = 0;
     for (const ViewDemand& set : views) {

@@ -27,6 +27,13 @@ struct ViewsWish {
 /// What one client wants of every frame.
 using Wish = std::variant<PlanesWish, ViewsWish>;
 
+/// What a client without the key frame that strips refer to asks for.
+enum class KeyNeed : std::uint8_t {
+    kNone,  ///< it has the key frame
+    kAlone, ///< strips that stand alone, always: it keeps no key frames
+    kKey,   ///< strips that stand alone until the next key frame, which may come early
+};
+
 /// Views of one format that somebody wants.
 struct ViewDemand {
     wire::ViewFormat format;
@@ -37,6 +44,8 @@ struct ViewDemand {
 struct Demand {
     std::vector<wire::PlaneChoice> planes; ///< each once
     std::vector<ViewDemand> views;         ///< each format once
+    bool needs_alone = false;              ///< somebody lacks the key frame
+    bool needs_key = false;                ///< and would keep one
 
     bool empty() const { return planes.empty() && views.empty(); }
     std::uint64_t view_pixels() const; ///< of all views together
@@ -44,5 +53,6 @@ struct Demand {
 
 /// Widens `demand` so that it covers `wish`.
 void add(Demand& demand, const Wish& wish);
+void add(Demand& demand, KeyNeed need);
 
 } // namespace fieldcast::feed

@@ -78,6 +78,8 @@ void check_rendering(const Config& config, Problems& problems) {
     const RenderSettings& settings = config.settings;
     expect(problems, settings.samples_per_pixel >= 1 && settings.samples_per_pixel <= kMaxSamples, "--spp",
            settings.samples_per_pixel, "1 to 65536");
+    expect(problems, settings.light_sampling.candidates >= 1 && settings.light_sampling.candidates <= kMaxLightCandidates,
+           "--light-candidates", settings.light_sampling.candidates, "1 to 64");
     expect(problems, settings.max_bounces <= kMaxBounces, "--bounces", settings.max_bounces, "0 to 256");
     expect(problems, settings.temporal_alpha > 0.0F && settings.temporal_alpha <= 1.0F, "--alpha",
            settings.temporal_alpha, "more than 0, at most 1");

@@ -52,6 +52,7 @@ struct Config {
     ViewGrid largest_grid;           ///< rows and columns
     GuardBandMode guard_band_mode = GuardBandMode::kAuto;
     GuardBand guard_band;    ///< kFixed
+    std::vector<LatticePosition> source_positions = middle_source(); ///< views of the largest grid
     RenderSettings settings; ///< exposure: see `has_auto_exposure`
     bool has_auto_exposure = true;
     std::uint32_t seed = 1;

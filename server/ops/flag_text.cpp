@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flag_text.h"
 
+#include "core/lightfield/sources.h"
+
 #include <array>
 #include <charconv>
 #include <optional>
@@ -103,6 +105,12 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
         config.largest_grid = *grid;
     } else {
         problems.push_back("--largest-grid " + text.largest_grid + ": write ROWSxCOLS, as in 6x6");
+    }
+    if (auto positions = parse_sources(text.sources, config.largest_grid)) {
+        config.source_positions = std::move(*positions);
+    } else {
+        problems.push_back("--sources " + text.sources +
+                           ": middle, top-left, diagonal, triangle, corners, or views of the largest grid as in \"0,0;5,5\"");
     }
     if (const auto metres = read_number<float>(text.convergence)) {
         config.lattice.convergence_m = *metres;

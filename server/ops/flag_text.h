@@ -17,6 +17,7 @@ struct FlagText {
     std::string size = "1280x720";
     std::string convergence = "inf";
     std::string largest_grid = "6x6";
+    std::string sources = "middle";
     bool lacks_next_event_estimation = false;
     std::string denoiser = "svgf+";
     std::string holes = "all";

@@ -19,6 +19,8 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --scene hall.glb --environment noon.exr --size 640x360 --fps 15
   fieldcast-server --channel red=a.gltf --channel blue=b.gltf --listen 127.0.0.1:0 --port-file port.txt
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
+  fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
+  fieldcast-server render --help                                                # what else it can write
   fieldcast-server --make-token alice view
   fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
   fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
@@ -57,6 +59,11 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--largest-grid", text.largest_grid, "ROWSxCOLS that the guard band is made for")
         ->group("Light field")
         ->capture_default_str();
+    app.add_option("--sources", text.sources,
+                   "Path traced views: middle, top-left, diagonal, triangle, corners, or views of the largest grid as in "
+                   "\"0,0;5,5\"")
+        ->group("Light field")
+        ->capture_default_str();
     app.add_option("--guard-band", text.guard_band, "auto, none, or LEFT,RIGHT,TOP,BOTTOM in pixels")
         ->group("Light field")
         ->capture_default_str();
@@ -66,7 +73,17 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     RenderSettings& settings = config.settings;
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
+    app.add_option("--light-candidates", settings.light_sampling.candidates,
+                   "Candidates of which the best is taken as light sample")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_flag("--each-light-kind", settings.light_sampling.each_kind,
+                 "A shadow ray for each kind of light at the first vertex instead of one for all")
+        ->group("Rendering");
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
+    app.add_flag("--accumulate", settings.accumulate,
+                 "While nothing moves, average frames without bias instead of denoising them")
+        ->group("Rendering");
     app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
@@ -135,6 +152,31 @@ void add_health_flags(CLI::App& app, HealthText& text) {
     add("--health-token-file", text.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
 }
 
+void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>& products) {
+    const auto add = [&](CLI::Option* option) { option->group("render")->configurable(false); };
+    add(app.add_option("--out", job.out, "Folder for the files")->capture_default_str());
+    add(app.add_option("--count", job.frame_count, "Frames to render, 1/fps apart, from a cold start")
+            ->check(CLI::Range(1U, 1U << 24U))
+            ->capture_default_str());
+    add(app.add_flag("--every-frame", job.writes_every_frame, "Write all frames, each to a folder; else the last"));
+    add(app.add_option("--reference", job.reference_samples,
+                       "Path trace every view of the last frame with so many samples, reuse nothing; also an EXR each")
+            ->check(CLI::Range(1U, 1U << 20U)));
+    add(app.add_option("--write", products, "quilt, views, contact-sheet, look-around, exr (the source's planes)")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
+            ->capture_default_str());
+}
+
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
+    return {.quilt = has("quilt"),
+            .views = has("views"),
+            .contact_sheet = has("contact-sheet"),
+            .look_around = has("look-around"),
+            .source_exr = has("exr")};
+}
+
 /// Everything that can be typed, and where it goes.
 struct CommandLine {
     CLI::App app{"Path traces light fields and streams them to many displays.", "fieldcast-server"};
@@ -145,8 +187,11 @@ struct CommandLine {
     bool only_print = false;
     std::vector<std::string> new_token;
     HealthText health;
+    bool renders = false; ///< "render" came first
+    OfflineJob job;
+    std::vector<std::string> products{"quilt", "views", "exr"};
 
-    CommandLine() {
+    explicit CommandLine(bool is_offline = false) : renders(is_offline) {
         app.footer(kExamples);
         app.allow_extras(); // so that all of them can be told
         app.set_version_flag("--version", "fieldcast-server " FIELDCAST_VERSION);
@@ -164,6 +209,9 @@ struct CommandLine {
         add_serving_flags(app, text, config);
         add_security_flags(app, text);
         add_health_flags(app, health);
+        if (renders) {
+            add_offline_flags(app, job, products);
+        }
     }
     CommandLine(const CommandLine&) = delete;
     CommandLine& operator=(const CommandLine&) = delete;
@@ -210,7 +258,7 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         file = read_config_file(typed.config_file, typed.app);
         check_each(file);
     }
-    CommandLine all;
+    CommandLine all(typed.renders);
     std::vector<std::string> merged(file.arguments);
     merged.insert(merged.end(), arguments.begin(), arguments.end());
     Invocation invocation;
@@ -227,6 +275,10 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
     } else if (all.only_check) {
         invocation.kind = Invocation::Kind::kCheck;
+    } else if (all.renders) {
+        invocation.kind = Invocation::Kind::kRender;
+        invocation.job = std::move(all.job);
+        invocation.job.products = read_products(all.products);
     }
     invocation.config = std::move(all.config);
     return invocation;
@@ -261,8 +313,9 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
 } // namespace
 
 Invocation read_flags(int argc, const char* const* argv) {
-    CommandLine typed;
-    return read({argv + 1, argv + argc}, typed);
+    const bool renders = argc > 1 && std::string_view(argv[1]) == "render";
+    CommandLine typed(renders);
+    return read({argv + (renders ? 2 : 1), argv + argc}, typed);
 }
 
 } // namespace fieldcast::ops

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/ops/config.h"
+#include "server/ops/offline_job.h"
 #include "server/service/health_probe.h"
 
 #include <string>
@@ -16,15 +17,17 @@ struct Invocation {
         kPrint,  ///< only print `text`: --help, --version, --print-config, --make-token
         kCheck,  ///< only validate
         kHealth, ///< only ask the server of `health`
+        kRender, ///< `job`, without serving
     };
     Kind kind = Kind::kServe;
     Config config;
     service::HealthQuestion health;
+    OfflineJob job;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. Reads files that flags name, changes nothing.
+/// Reads flags, or a --config file with the same names. "render" in front asks for files instead of a service. Reads files that flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

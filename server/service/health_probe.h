@@ -14,11 +14,11 @@ namespace fieldcast::service {
 struct HealthQuestion {
     HostPort address;
     bool uses_tls = false;
-    std::filesystem::path ca;          ///< PEM: who may have signed its certificate; empty: the system's
-    std::string name;                  ///< in its certificate; empty: the host
-    std::filesystem::path certificate; ///< PEM: ours, if it asks for one; together with `key`
-    std::filesystem::path key;
-    std::string token; ///< empty: none
+    std::filesystem::path ca{};          ///< PEM: who may have signed its certificate; empty: the system's
+    std::string name{};                  ///< in its certificate; empty: the host
+    std::filesystem::path certificate{}; ///< PEM: ours, if it asks for one; together with `key`
+    std::filesystem::path key{};
+    std::string token{}; ///< empty: none
     std::chrono::milliseconds timeout{5000};
 };
 

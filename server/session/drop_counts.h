@@ -15,10 +15,11 @@ enum class DropReason : std::uint8_t {
     kRateCap,      ///< the client asked for fewer frames
     kReconfigured, ///< made for an earlier configuration, or aborted because of a new one
     kLeaving,      ///< the server had said GoingAway
+    kNoKeyFrame,   ///< it refers to a key frame that the client did not get
 };
-inline constexpr std::size_t kDropReasonCount = 5;
-inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames{"sending", "no_credit", "rate_cap",
-                                                                                 "reconfigured", "leaving"};
+inline constexpr std::size_t kDropReasonCount = 6;
+inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames{
+    "sending", "no_credit", "rate_cap", "reconfigured", "leaving", "no_key_frame"};
 
 /// Dropped frames of one session by reason.
 class DropCounts {

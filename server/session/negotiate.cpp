@@ -239,7 +239,8 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Chan
                          .wish = std::move(*wish),
                          .frames_per_second = *rate,
                          .max_bytes_in_flight = std::min(bytes, limits.max_bytes_in_flight),
-                         .chunk_bytes = *chunk_bytes};
+                         .chunk_bytes = *chunk_bytes,
+                         .keeps_key_frames = wanted.keeps_key_frames()};
 }
 
 } // namespace fieldcast::session

@@ -23,6 +23,7 @@ struct Configuration {
     float frames_per_second = 30.0F;
     std::uint64_t max_bytes_in_flight = 0;
     std::uint32_t chunk_bytes = wire::kDefaultChunkBytes;
+    bool keeps_key_frames = false; ///< strips may refer to them
 };
 
 struct Refusal {

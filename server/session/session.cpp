@@ -61,6 +61,7 @@ void Session::handle(const v1::Configure& wanted) {
     configuration_ = std::move(*chosen);
     credits_.configure(static_cast<double>(configuration_->frames_per_second), configuration_->max_bytes_in_flight);
     next_frame_due_ = {};
+    set_key_frame(0);
     ++epoch_;
     *answers_.emplace_back().mutable_configured() =
         to_message(*configuration_, wanted.request_id(), epoch_, credits_.limit());
@@ -105,6 +106,9 @@ void Session::handle(const v1::FrameAck& ack, TimePoint now) {
         credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
     if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
         ++counts_.frames_failed;
+        if (ack.epoch() == epoch_) {
+            set_key_frame(0); // it may have been that one, or one that referred to what the client does not have
+        }
     }
 }
 
@@ -216,7 +220,14 @@ void Session::start_frame(TimePoint now) {
     if (mailbox_.peek() == nullptr || !credits_.allow(0)) {
         return;
     }
-    wire::WireFrame frame = chunks_of(**mailbox_.peek());
+    const feed::EncodedFrame& newest = **mailbox_.peek();
+    if (!has_key_frame_of(newest) && !feed::stands_alone(newest, configuration_->wish)) {
+        set_key_frame(0);
+        mailbox_.take();
+        counts_.drops.add(DropReason::kNoKeyFrame);
+        return;
+    }
+    wire::WireFrame frame = chunks_of(newest);
     if (!credits_.allow(frame.payload_bytes)) {
         return; // stays in the mailbox, where a newer one may replace it
     }
@@ -231,8 +242,11 @@ std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::E
                                                                    const wire::WireFrame& chunks) const {
     std::map<wire::PlaneChoice, std::uint64_t> bytes;
     if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+        const bool has_key_frame = has_key_frame_of(frame);
         for (const wire::PlaneChoice& choice : planes->choices) {
-            bytes[choice] = frame.source->find(choice)->encoded_bytes();
+            for (const wire::EncodedStrip& strip : frame.source->find(choice)->strips) {
+                bytes[choice] += (has_key_frame ? strip.best : strip.alone).bytes->size(); // as in `source_chunks`
+            }
         }
         return bytes;
     }
@@ -242,12 +256,27 @@ std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::E
 }
 
 wire::WireFrame Session::chunks_of(const feed::EncodedFrame& frame) const {
-    const wire::ChunkOptions options{.epoch = epoch_, .chunk_bytes = configuration_->chunk_bytes};
+    const wire::ChunkOptions options{
+        .epoch = epoch_, .chunk_bytes = configuration_->chunk_bytes, .has_key_frame = has_key_frame_of(frame)};
     if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
         return wire::source_chunks(*frame.source, planes->choices, options);
     }
     const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
     return wire::view_chunks(*feed::find_views(frame, views.format), views.grid, options);
+}
+
+bool Session::has_key_frame_of(const feed::EncodedFrame& frame) const {
+    const bool has_it = frame.key_frame_id == key_frame_id_ || frame.key_frame_id == frame.header.frame_id;
+    return configuration_->keeps_key_frames && frame.key_frame_id != 0 && has_it;
+}
+
+void Session::set_key_frame(std::uint64_t frame_id) {
+    key_frame_id_ = frame_id;
+    if (subscription_.feed() != nullptr) {
+        subscription_.set_key_need(!configuration_->keeps_key_frames ? feed::KeyNeed::kAlone
+                                   : frame_id == 0                   ? feed::KeyNeed::kKey
+                                                                     : feed::KeyNeed::kNone);
+    }
 }
 
 wire::WireChunk Session::next_chunk(TimePoint now) {
@@ -269,6 +298,9 @@ wire::WireChunk Session::next_chunk(TimePoint now) {
         counts_.plane_bytes[choice] += bytes;
     }
     credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
+    if (sending.frame.key_frame_id == sending.frame.frame_id) {
+        set_key_frame(sending.frame.frame_id); // what follows on the stream arrives after it
+    }
     sending_.reset();
     return trailer;
 }

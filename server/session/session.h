@@ -76,6 +76,8 @@ private:
     wire::WireFrame chunks_of(const feed::EncodedFrame& frame) const;
     std::map<wire::PlaneChoice, std::uint64_t> plane_bytes_of(const feed::EncodedFrame& frame,
                                                               const wire::WireFrame& chunks) const;
+    bool has_key_frame_of(const feed::EncodedFrame& frame) const; ///< the client has, or this is it
+    void set_key_frame(std::uint64_t frame_id);                   ///< that the client has; 0: none
     wire::WireChunk next_chunk(TimePoint now);
 
     std::vector<std::shared_ptr<feed::Feed>> channels_;
@@ -86,6 +88,7 @@ private:
     Credits credits_;
     Mailbox<feed::FramePtr> mailbox_;
     std::optional<Sending> sending_;
+    std::uint64_t key_frame_id_ = 0; ///< that the client has; 0: none
     std::deque<v1::ServerMessage> answers_;
     std::optional<Departure> departure_; ///< GoingAway is to be sent
     std::optional<TimePoint> cut_at_;    ///< set when GoingAway was sent

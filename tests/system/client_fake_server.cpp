@@ -110,7 +110,7 @@ std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uin
     format.fovy_rad = set.fovy_rad;
     format.width_px = set.width_px;
     format.height_px = set.height_px;
-    const wire::EncodedViews encoded = wire::encode_views(grey_views(set, frame_id), format, pool);
+    const wire::EncodedViews encoded = wire::encode_views(grey_views(set, frame_id), format, {}, pool);
     const wire::WireFrame frame = wire::view_chunks(encoded, set.grid, {.epoch = kEpoch});
     std::vector<v1::ServerMessage> messages;
     for (const wire::WireChunk& chunk : frame.chunks) {

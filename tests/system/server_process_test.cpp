@@ -189,5 +189,18 @@ TEST_F(RenderingServer, SecondSignalStopsAtOnce) {
     EXPECT_FALSE(call.finish().ok());
 }
 
+TEST(ServerProcess, RenderWritesALightFieldWithoutServing) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fieldcast_render_test";
+    std::filesystem::remove_all(folder);
+    Process process({"render", "--scene", kScene, "--size", "64x36", "--largest-grid", "2x3", "--sources", "diagonal",
+                     "--count", "2", "--every-frame", "--out", folder.string()});
+    EXPECT_EQ(process.wait(), 0);
+    for (const char* frame : {"frame_000000", "frame_000001"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / frame / "view_r1_c2.png")) << frame;
+        EXPECT_TRUE(std::filesystem::exists(folder / frame / "source.exr")) << frame;
+    }
+    std::filesystem::remove_all(folder);
+}
+
 } // namespace
 } // namespace fieldcast::test

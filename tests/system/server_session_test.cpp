@@ -67,7 +67,27 @@ protected:
         session_.on_message(message, now_);
     }
 
-    void publish() { feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(), ++frame_id_, pool_)); }
+    /// `key_frame_id`: that strips refer to; the frame's own if nothing is said.
+    void publish(std::optional<std::uint64_t> key_frame_id = std::nullopt) {
+        ++frame_id_;
+        feed_->publish(
+            test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, key_frame_id.value_or(frame_id_)));
+    }
+
+    void configure_with_key_frames() {
+        v1::Configure wanted;
+        wanted.set_keeps_key_frames(true);
+        configure(wanted);
+        drain();
+    }
+
+    /// Header::key_frame_id of the next frame to be written; its other chunks are written too.
+    std::uint64_t next_key_frame_id() {
+        const v1::ServerMessage message = next();
+        EXPECT_TRUE(message.frame_chunk().has_header());
+        EXPECT_EQ(drain(), 1);
+        return message.frame_chunk().header().key_frame_id();
+    }
 
     /// The next message, or one of no kind.
     v1::ServerMessage next() {
@@ -275,6 +295,80 @@ TEST_F(SessionTest, AnotherLatticeIsAdmittedWithinTheBudgetOnly) {
     ASSERT_TRUE(answer.ParseFromString(wire::joined(*second.next(now_))));
     EXPECT_EQ(answer.refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
     EXPECT_NE(answer.refused().message().find(std::to_string(feed_->info().max_view_pixels)), std::string::npos);
+}
+
+TEST_F(SessionTest, FramesReferToTheKeyFrameOnceItWasSent) {
+    configure_with_key_frames();
+    EXPECT_TRUE(feed_->demand().needs_key);
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 1U);
+    EXPECT_FALSE(feed_->demand().needs_key);
+    EXPECT_FALSE(feed_->demand().needs_alone);
+    publish(1);
+    EXPECT_EQ(next_key_frame_id(), 1U);
+    acknowledge(1);
+    acknowledge(2);
+    publish(1);
+    EXPECT_EQ(next_key_frame_id(), 1U);
+}
+
+TEST_F(SessionTest, WhoJoinsBetweenKeyFramesGetsFramesThatStandAlone) {
+    frame_id_ = 10;
+    configure_with_key_frames();
+    publish(7);
+    EXPECT_EQ(next_key_frame_id(), 0U);
+    EXPECT_TRUE(feed_->demand().needs_key) << "until it has one";
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 12U);
+}
+
+TEST_F(SessionTest, AFrameThatRefersToAMissedKeyFrameIsDropped) {
+    configure_with_key_frames();
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 1U);
+    acknowledge(1);
+    publish(); // a key frame that is replaced in the mailbox before it is sent
+    publish(2);
+    EXPECT_EQ(next().message_case(), v1::ServerMessage::MESSAGE_NOT_SET);
+    EXPECT_EQ(dropped(DropReason::kNoKeyFrame), 1U) << "nobody had asked for strips that stand alone";
+    EXPECT_TRUE(feed_->demand().needs_alone);
+    publish(2);
+    EXPECT_EQ(next_key_frame_id(), 0U) << "now they are there";
+}
+
+TEST_F(SessionTest, AClientThatFailedToDecodeIsAskedForNothingItLacks) {
+    configure_with_key_frames();
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 1U);
+    v1::ClientMessage message;
+    message.mutable_frame_ack()->set_frame_id(1);
+    message.mutable_frame_ack()->set_epoch(1);
+    message.mutable_frame_ack()->set_outcome(v1::FRAME_OUTCOME_FAILED);
+    session_.on_message(message, now_);
+    EXPECT_TRUE(feed_->demand().needs_key);
+    publish(1);
+    EXPECT_EQ(next_key_frame_id(), 0U);
+}
+
+TEST_F(SessionTest, AClientThatKeepsNoKeyFramesForcesNone) {
+    configure();
+    drain();
+    EXPECT_TRUE(feed_->demand().needs_alone);
+    EXPECT_FALSE(feed_->demand().needs_key);
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 0U);
+    publish(1);
+    EXPECT_EQ(next_key_frame_id(), 0U);
+}
+
+TEST_F(SessionTest, AnotherConfigurationForgetsTheKeyFrame) {
+    configure_with_key_frames();
+    publish();
+    EXPECT_EQ(next_key_frame_id(), 1U);
+    configure_with_key_frames();
+    EXPECT_TRUE(feed_->demand().needs_key);
+    publish(1);
+    EXPECT_EQ(next_key_frame_id(), 0U);
 }
 
 } // namespace

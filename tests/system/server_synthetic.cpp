@@ -91,14 +91,22 @@ feed::ChannelInfo synthetic_info(const std::string& name) {
 }
 
 feed::FramePtr synthetic_frame(const feed::ChannelInfo& info, const feed::Demand& demand, std::uint64_t frame_id,
-                               WorkerPool& pool) {
+                               WorkerPool& pool, std::uint64_t key_frame_id) {
     auto frame = std::make_shared<feed::EncodedFrame>();
     frame->header = synthetic_header(info, frame_id);
+    frame->key_frame_id = key_frame_id;
+    wire::KeyFrame key{.frame_id = key_frame_id, .is_optional = demand.needs_alone};
+    const bool refers = key_frame_id != 0 && key_frame_id != frame_id;
     if (!demand.planes.empty()) {
-        frame->source = wire::encode_source(synthetic_source(info, demand, frame_id), demand.planes, pool);
+        const SourceFrame source = synthetic_source(info, demand, frame_id);
+        const SourceFrame key_source = synthetic_source(info, demand, frame_id); // everything is repeated
+        key.source = refers ? &key_source : nullptr;
+        frame->source = wire::encode_source(source, demand.planes, key, pool);
     }
     for (const feed::ViewDemand& views : demand.views) {
-        frame->views.push_back(wire::encode_views(synthetic_views(info, views, frame_id), views.format, pool));
+        const Views key_views = synthetic_views(info, views, frame_id);
+        key.views = refers ? &key_views : nullptr;
+        frame->views.push_back(wire::encode_views(synthetic_views(info, views, frame_id), views.format, key, pool));
     }
     return frame;
 }

@@ -26,8 +26,9 @@ target_link_libraries(http_client PRIVATE OpenSSL::SSL OpenSSL::Crypto fieldcast
 fieldcast_test(server_metrics_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_metrics_test.cpp
     DEPENDS certificate_authority http_client fieldcast_server_metrics)
-fieldcast_test(server_clock_test LABELS quick
+fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
     DEPENDS fieldcast_server_channel)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
 # like a race. What the server's own threads share is in server_session_test.
@@ -52,3 +53,16 @@ fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
 target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
+
+# Processes: the programs beside the test.
+add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
+target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
+add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
+target_link_libraries(running_server PUBLIC test_program http_client fieldcast_proto_grpc PRIVATE GTest::gtest fieldcast_warnings)
+find_package(nlohmann_json REQUIRED)
+fieldcast_test(operation_process_test LABELS gpu TIMEOUT 300
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
+    DEPENDS running_server nlohmann_json::nlohmann_json)
+add_dependencies(operation_process_test fieldcast-server)
+target_compile_definitions(operation_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")

@@ -15,7 +15,7 @@ using namespace fieldcast::testing;
 TEST(Chunks, AreSerialisedServerMessages) {
     WorkerPool pool(1);
     const auto choices = all_choices();
-    const EncodedSource source = encode_source(test_source(5), choices, pool);
+    const EncodedSource source = encode_source(test_source(5), choices, {}, pool);
     const WireFrame frame = source_chunks(source, choices, {.epoch = 2, .chunk_bytes = kMinChunkBytes});
     for (const WireChunk& chunk : frame.chunks) {
         v1::ServerMessage message;
@@ -30,11 +30,11 @@ TEST(Chunks, PayloadIsSharedByAllClients) {
     WorkerPool pool(2);
     const ViewGrid largest{.rows = 4, .cols = 4, .geometry = {}, .anchor = Anchor::kLattice};
     const ViewFormat format{.geometry = largest.geometry, .fovy_rad = 0.8F, .width_px = 20, .height_px = 125};
-    const EncodedViews views = encode_views(test_views(largest, 20, 125), format, pool);
+    const EncodedViews views = encode_views(test_views(largest, 20, 125), format, {}, pool);
     std::set<const std::byte*> encoded;
     for (const auto& [position, view] : views.views) {
         for (const EncodedStrip& strip : view.image.strips) {
-            encoded.insert(strip.bytes->data());
+            encoded.insert(strip.best.bytes->data());
         }
     }
     for (const std::uint32_t side : {1U, 2U, 3U, 4U}) {
@@ -53,7 +53,8 @@ TEST(Chunks, SplitStripsAtTheChunkSize) {
     const Camera widened = with_guard_band(frame.header.source, frame.header.guard_band);
     frame.planes = {random_plane(PlaneFormat::kU32, widened.width_px, widened.height_px)};
     const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, codec::CodecId::kRaw}};
-    const WireFrame wire = source_chunks(encode_source(frame, choices, pool), choices, {.chunk_bytes = kMinChunkBytes});
+    const WireFrame wire =
+        source_chunks(encode_source(frame, choices, {}, pool), choices, {.chunk_bytes = kMinChunkBytes});
     std::uint64_t total = 0;
     std::uint32_t crc = 0;
     for (const WireChunk& chunk : wire.chunks) {
@@ -72,7 +73,7 @@ TEST(Chunks, ClientsChooseCodecsFromOneEncoding) {
     const std::vector<PlaneChoice> both{{PlaneSemantic::kDepth, codec::CodecId::kRaw},
                                         {PlaneSemantic::kDepth, codec::CodecId::kZstdFiltered},
                                         {PlaneSemantic::kDepth, codec::CodecId::kRaw}};
-    const EncodedSource source = encode_source(test_source(1), both, pool);
+    const EncodedSource source = encode_source(test_source(1), both, {}, pool);
     EXPECT_EQ(source.planes.size(), 2U);
     const WireFrame raw = source_chunks(source, std::span(both).first(1), {});
     const WireFrame zstd = source_chunks(source, std::span(both).subspan(1, 1), {});
@@ -83,10 +84,10 @@ TEST(Chunks, ClientsChooseCodecsFromOneEncoding) {
 TEST(Chunks, UnencodedWishesAreOurBug) {
     WorkerPool pool(1);
     const std::vector<PlaneChoice> choices{{PlaneSemantic::kDepth, codec::CodecId::kRaw}};
-    const EncodedSource source = encode_source(test_source(1), choices, pool);
+    const EncodedSource source = encode_source(test_source(1), choices, {}, pool);
     const std::vector<PlaneChoice> other{{PlaneSemantic::kId, codec::CodecId::kRaw}};
     EXPECT_THROW(source_chunks(source, other, {}), std::logic_error);
-    EXPECT_THROW(encode_source(SourceFrame{}, choices, pool), std::logic_error);
+    EXPECT_THROW(encode_source(SourceFrame{}, choices, {}, pool), std::logic_error);
 }
 
 } // namespace

@@ -19,13 +19,13 @@ protected:
     /// Chunks small enough that strips are split.
     std::vector<v1::FrameChunk> source_frame(std::uint64_t frame_id, std::uint32_t chunk_bytes = 150) {
         const auto choices = all_choices();
-        const EncodedSource source = encode_source(test_source(frame_id), choices, pool_);
+        const EncodedSource source = encode_source(test_source(frame_id), choices, {}, pool_);
         return all_chunks(source_chunks(source, choices, {.epoch = 3, .chunk_bytes = chunk_bytes}), times_);
     }
 
     std::vector<v1::FrameChunk> view_frame(const ViewGrid& grid) {
         const ViewFormat format{.geometry = grid.geometry, .fovy_rad = 0.7F, .width_px = 30, .height_px = 130};
-        const EncodedViews views = encode_views(test_views(grid, 30, 130), format, pool_);
+        const EncodedViews views = encode_views(test_views(grid, 30, 130), format, {}, pool_);
         return all_chunks(view_chunks(views, grid, {.epoch = 3}), times_);
     }
 
@@ -133,7 +133,7 @@ TEST_F(FrameAssemblerTest, DamagedPayloadFailsAndTheNextFrameIsFine) {
 
 TEST_F(FrameAssemblerTest, RawDamageIsCaughtByTheCrc) {
     const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, codec::CodecId::kRaw}};
-    const EncodedSource source = encode_source(test_source(1), choices, pool_);
+    const EncodedSource source = encode_source(test_source(1), choices, {}, pool_);
     auto chunks = all_chunks(source_chunks(source, choices, {.epoch = 3}));
     chunks[1].mutable_payload()->back() ^= 1;
     expect_failure(chunks, "crc32c");

@@ -25,8 +25,17 @@ void write_valid(const std::filesystem::path& folder) {
     for (const PlaneFormat format : testing::kAllFormats) {
         const Plane plane = testing::ramp_plane(format, 33, 20);
         const std::string name = testing::name_of(format);
-        write(folder / (name + "_raw.strip"), codec::encode_strip(plane, {3, 15}, CodecId::kRaw));
-        write(folder / (name + "_zstd.strip"), codec::encode_strip(plane, {3, 15}, CodecId::kZstdFiltered));
+        const Plane reference = testing::ramp_plane(format, 33, 20, 1);
+        codec::ByteFilter temporal = codec::filter_for(format);
+        temporal.predictor = codec::Predictor::kReference;
+        const auto encode = [&](const codec::StripOptions& options) {
+            return codec::encode_strip(plane, {3, 15}, options);
+        };
+        write(folder / (name + "_raw.strip"), encode({.codec = CodecId::kRaw}));
+        write(folder / (name + "_zstd.strip"), encode({.filter = testing::first_filter(format)}));
+        write(folder / (name + "_predicted.strip"), encode({}));
+        write(folder / (name + "_reference.strip"), encode({.reference = &reference, .filter = temporal}));
+        write(folder / (name + "_repeat.strip"), encode({.reference = &plane}));
     }
 }
 
@@ -47,8 +56,9 @@ Bytes with_body(const Bytes& strip, std::span<const std::byte> body) {
 
 void write_malformed(const std::filesystem::path& folder) {
     const Plane plane = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
-    const Bytes zstd = codec::encode_strip(plane, {3, 15}, CodecId::kZstdFiltered);
-    const Bytes raw = codec::encode_strip(plane, {3, 15}, CodecId::kRaw);
+    const Bytes zstd = codec::encode_strip(plane, {3, 15}, {.filter = testing::first_filter(plane.format)});
+    const Bytes raw = codec::encode_strip(plane, {3, 15}, {.codec = CodecId::kRaw});
+    const Bytes repeat = codec::encode_strip(plane, {3, 15}, {.reference = &plane});
     const auto body = std::span(zstd).subspan(codec::kStripHeaderBytes);
     write(folder / "empty.strip", {});
     write(folder / "truncated_header.strip", Bytes(zstd.begin(), zstd.begin() + 15));
@@ -57,9 +67,15 @@ void write_malformed(const std::filesystem::path& folder) {
     write(folder / "codec.strip", with_byte(zstd, 1, 9));
     write(folder / "format.strip", with_byte(zstd, 2, 7));
     write(folder / "other_format.strip", with_byte(zstd, 2, 5));
-    write(folder / "predictor.strip", with_byte(zstd, 3, 3));
+    write(folder / "predictor.strip", with_byte(zstd, 3, 5));
     write(folder / "word.strip", with_byte(zstd, 4, 2));
-    write(folder / "flags.strip", with_byte(zstd, 5, 1));
+    write(folder / "flags.strip", with_byte(zstd, 5, 2));
+    write(folder / "raw_flags.strip", with_byte(raw, 5, 1));
+    write(folder / "floats_layout.strip", with_byte(zstd, 4, 11));
+    write(folder / "reference.strip", with_byte(zstd, 3, 4));
+    write(folder / "repeat.strip", repeat);
+    write(folder / "repeat_filter.strip", with_byte(repeat, 3, 4));
+    write(folder / "repeat_body.strip", with_body(repeat, std::span(raw).subspan(16, 1)));
     write(folder / "width.strip", with_byte(zstd, 6, 32));
     write(folder / "rows.strip", with_byte(zstd, 10, 16));
     write(folder / "raw_filter.strip", with_byte(raw, 3, 1));
@@ -69,13 +85,12 @@ void write_malformed(const std::filesystem::path& folder) {
     write(folder / "two_frames.strip", with_body(zstd, twice));
     write(folder / "cut_frame.strip", with_body(zstd, body.first(body.size() - 1)));
     // zstd frame header: magic, descriptor with 8 bytes of content size and one segment, 1 TiB
-    const Bytes bomb{std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F}, std::byte{0xFD}, std::byte{0xE0},
-                     std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0},
-                     std::byte{1},    std::byte{0},    std::byte{0},    std::byte{1},    std::byte{0},
-                     std::byte{0}};
+    const Bytes bomb{std::byte{0x28}, std::byte{0xB5}, std::byte{0x2F}, std::byte{0xFD}, std::byte{0xE0}, std::byte{0},
+                     std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0},    std::byte{1},    std::byte{0},
+                     std::byte{0},    std::byte{1},    std::byte{0},    std::byte{0}};
     write(folder / "huge_content.strip", with_body(zstd, bomb));
     const Plane larger = testing::ramp_plane(PlaneFormat::kRgb8, 33, 16);
-    const Bytes other = codec::encode_strip(larger, {0, 16}, CodecId::kZstdFiltered);
+    const Bytes other = codec::encode_strip(larger, {0, 16}, {.filter = testing::first_filter(plane.format)});
     write(folder / "other_content.strip", with_body(zstd, std::span(other).subspan(codec::kStripHeaderBytes)));
 }
 

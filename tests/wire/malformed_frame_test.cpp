@@ -14,14 +14,14 @@ using ::testing::HasSubstr;
 std::vector<v1::FrameChunk> source_frame() {
     WorkerPool pool(1);
     const auto choices = all_choices();
-    return all_chunks(source_chunks(encode_source(test_source(1), choices, pool), choices, {.chunk_bytes = 100}));
+    return all_chunks(source_chunks(encode_source(test_source(1), choices, {}, pool), choices, {.chunk_bytes = 100}));
 }
 
 std::vector<v1::FrameChunk> view_frame() {
     WorkerPool pool(1);
     const ViewGrid grid{.rows = 1, .cols = 2, .geometry = {}, .anchor = Anchor::kLattice};
     const ViewFormat format{.geometry = {}, .fovy_rad = 0.7F, .width_px = 8, .height_px = 8};
-    const EncodedViews views = encode_views(test_views(grid, 8, 8), format, pool);
+    const EncodedViews views = encode_views(test_views(grid, 8, 8), format, {}, pool);
     return all_chunks(view_chunks(views, grid, {}));
 }
 
@@ -94,7 +94,8 @@ TEST(MalformedFrame, HostileStrips) {
                        {"payload of", 2, [](auto& c) { c.set_payload(std::string((2 << 20) + 1, 'x')); }},
                        {"neither header", 2, [](auto& c) { c.clear_content(); }},
                        {"trailer with payload", kLast, [](auto& c) { c.set_payload("x"); }},
-                       {"ends at row", 1, [](auto& c) {
+                       {"ends at row", 1,
+                        [](auto& c) {
                             c.mutable_trailer();
                             c.clear_payload();
                         }},

@@ -27,14 +27,19 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
         {"truncated_body", "bytes follow"},
         {"version", "version 2 is not 1"},
         {"codec", "unknown codec"},
-        {"format", "unknown codec, format"},
+        {"format", "unknown codec or format"},
         {"other_format", "differ from what was announced"},
-        {"predictor", "predictor 3"},
-        {"word", "words of 2 bytes"},
+        {"predictor", "predictor 5"},
+        {"word", "channels of layout 2"},
+        {"floats_layout", "channels of layout 11"},
         {"flags", "flags"},
+        {"raw_flags", "flags"},
+        {"reference", "refers to another frame"},
+        {"repeat", "refers to another frame"},
+        {"repeat_filter", "only ZSTD_FILTERED has a filter"},
         {"width", "differ from what was announced"},
         {"rows", "differ from what was announced"},
-        {"raw_filter", "RAW has no filter"},
+        {"raw_filter", "only ZSTD_FILTERED has a filter"},
         {"raw_short", "raw bytes"},
         {"two_frames", "not exactly one zstd frame"},
         {"cut_frame", "not exactly one zstd frame"},
@@ -44,21 +49,30 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
     for (const MalformedFile& file : files) {
         Plane plane = empty_plane(PlaneFormat::kRgb8, 33, 20);
         const auto strip = read_bytes("tests/data/wire/v1/malformed/" + std::string(file.name) + ".strip");
-        const auto result = decode_strip(strip, kBand, plane);
+        const auto result = decode_strip(strip, kBand, nullptr, plane);
         ASSERT_FALSE(result) << file.name;
         EXPECT_THAT(result.error().message, HasSubstr(file.error)) << file.name;
     }
+}
+
+TEST(MalformedStrip, RepetitionsHaveNoBytes) {
+    const Plane reference = ramp_plane(PlaneFormat::kRgb8, 33, 20);
+    Plane plane = empty_plane(PlaneFormat::kRgb8, 33, 20);
+    const auto result =
+        decode_strip(read_bytes("tests/data/wire/v1/malformed/repeat_body.strip"), kBand, &reference, plane);
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().message, HasSubstr("has no bytes"));
 }
 
 TEST(MalformedStrip, EveryTruncationIsRefused) {
     for (const PlaneFormat format : kAllFormats) {
         const Plane plane = ramp_plane(format, 33, 20);
         for (const CodecId codec : {CodecId::kRaw, CodecId::kZstdFiltered}) {
-            const auto strip = encode_strip(plane, kBand, codec);
+            const auto strip = encode_strip(plane, kBand, {.codec = codec});
             Plane decoded = empty_plane(format, 33, 20);
             for (std::size_t size = 0; size < strip.size(); ++size) {
                 const std::vector<std::byte> cut(strip.begin(), strip.begin() + static_cast<std::ptrdiff_t>(size));
-                EXPECT_FALSE(decode_strip(cut, kBand, decoded)) << name_of(format) << " cut to " << size;
+                EXPECT_FALSE(decode_strip(cut, kBand, nullptr, decoded)) << name_of(format) << " cut to " << size;
             }
         }
     }
@@ -66,10 +80,10 @@ TEST(MalformedStrip, EveryTruncationIsRefused) {
 
 TEST(MalformedStrip, RefusesRowsOutsideThePlane) {
     const Plane plane = ramp_plane(PlaneFormat::kRgb8, 33, 20);
-    const auto strip = encode_strip(plane, kBand, CodecId::kRaw);
+    const auto strip = encode_strip(plane, kBand, {.codec = CodecId::kRaw});
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
     for (const RowBand band : {RowBand{20, 1}, RowBand{6, 15}, RowBand{0, 0}, RowBand{0xFFFFFFFF, 2}}) {
-        EXPECT_FALSE(decode_strip(strip, band, decoded));
+        EXPECT_FALSE(decode_strip(strip, band, nullptr, decoded));
     }
 }
 
@@ -77,7 +91,8 @@ TEST(MalformedStrip, RefusesRowsOutsideThePlane) {
 TEST(MalformedStrip, RandomDamageNeverReachesOtherRows) {
     std::mt19937 random(7);
     for (const PlaneFormat format : kAllFormats) {
-        const auto strip = encode_strip(ramp_plane(format, 33, 20), kBand, CodecId::kZstdFiltered);
+        const Plane reference = ramp_plane(format, 33, 20, 1);
+        const auto strip = encode_strip(ramp_plane(format, 33, 20), kBand, {.reference = &reference});
         const std::size_t row_bytes = 33 * bytes_per_pixel(format);
         Plane decoded = empty_plane(format, 33, 20);
         for (int round = 0; round < 2000; ++round) {
@@ -85,7 +100,7 @@ TEST(MalformedStrip, RandomDamageNeverReachesOtherRows) {
             for (auto flips = 1 + random() % 4; flips > 0; --flips) {
                 damaged[random() % damaged.size()] ^= static_cast<std::byte>(1U << random() % 8);
             }
-            static_cast<void>(decode_strip(damaged, kBand, decoded));
+            static_cast<void>(decode_strip(damaged, kBand, &reference, decoded));
         }
         for (std::size_t i = 0; i < decoded.bytes.size(); ++i) {
             if (i / row_bytes < 3 || i / row_bytes >= 18) {
@@ -103,7 +118,7 @@ TEST(MalformedStrip, RandomBytesAreRefused) {
         for (std::byte& byte : bytes) {
             byte = static_cast<std::byte>(random());
         }
-        EXPECT_FALSE(decode_strip(bytes, {0, 16}, decoded));
+        EXPECT_FALSE(decode_strip(bytes, {0, 16}, nullptr, decoded));
     }
 }
 

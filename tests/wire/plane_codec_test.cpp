@@ -21,9 +21,9 @@ protected:
     void expect_round_trip(const Plane& plane, const std::string& what) const {
         Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
         for (const RowBand band : strip_bands(plane.height_px)) {
-            const auto strip = encode_strip(plane, band, codec());
+            const auto strip = encode_strip(plane, band, {.codec = codec()});
             EXPECT_LE(strip.size(), max_strip_bytes(plane.format, plane.width_px, band.row_count)) << what;
-            const auto result = decode_strip(strip, band, decoded);
+            const auto result = decode_strip(strip, band, nullptr, decoded);
             ASSERT_TRUE(result) << what << ": " << result.error().message;
         }
         EXPECT_TRUE(decoded == plane) << what;
@@ -49,7 +49,8 @@ TEST_P(EveryCodec, StripsAreIndependent) {
     const Plane plane = ramp_plane(format(), 40, 300);
     const RowBand band{120, 120};
     Plane decoded = empty_plane(format(), 40, 300);
-    ASSERT_TRUE(decode_strip(encode_strip(plane, band, codec()), band, decoded)); // the others never arrive
+    ASSERT_TRUE(
+        decode_strip(encode_strip(plane, band, {.codec = codec()}), band, nullptr, decoded)); // the others never arrive
     const std::size_t row_bytes = 40 * bytes_per_pixel(format());
     for (std::size_t i = 0; i < plane.bytes.size(); ++i) {
         const bool is_inside = i / row_bytes >= 120 && i / row_bytes < 240;
@@ -61,13 +62,13 @@ TEST_P(EveryCodec, TakesAnyNumberOfRows) {
     const Plane plane = ramp_plane(format(), 9, 50);
     for (const RowBand band : {RowBand{0, 50}, RowBand{3, 1}, RowBand{49, 1}, RowBand{7, 31}}) {
         Plane decoded = empty_plane(format(), 9, 50);
-        EXPECT_TRUE(decode_strip(encode_strip(plane, band, codec()), band, decoded));
+        EXPECT_TRUE(decode_strip(encode_strip(plane, band, {.codec = codec()}), band, nullptr, decoded));
     }
 }
 
 TEST_P(EveryCodec, SameInputSameBytes) {
     const Plane plane = ramp_plane(format(), 50, 60);
-    EXPECT_EQ(encode_strip(plane, {0, 60}, codec()), encode_strip(plane, {0, 60}, codec()));
+    EXPECT_EQ(encode_strip(plane, {0, 60}, {.codec = codec()}), encode_strip(plane, {0, 60}, {.codec = codec()}));
 }
 
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
@@ -82,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(PlaneCodec, EveryCodec,
 TEST(PlaneCodec, CompressesSmoothPlanes) {
     for (const PlaneFormat format : kAllFormats) {
         const Plane plane = ramp_plane(format, 320, 120);
-        const auto strip = encode_strip(plane, {0, 120}, CodecId::kZstdFiltered);
+        const auto strip = encode_strip(plane, {0, 120}, {});
         // One bit of noise per pixel and byte remains; ids are not predicted, so only their ramps repeat.
         EXPECT_LT(strip.size(), plane.bytes.size() * 4 / 5) << name_of(format);
     }
@@ -90,10 +91,62 @@ TEST(PlaneCodec, CompressesSmoothPlanes) {
 
 TEST(PlaneCodec, FallsBackToRawForNoise) {
     const Plane plane = random_plane(PlaneFormat::kRgb8, 40, 40);
-    const auto strip = encode_strip(plane, {0, 40}, CodecId::kZstdFiltered);
+    const auto strip = encode_strip(plane, {0, 40}, {});
     EXPECT_EQ(strip.size(), max_strip_bytes(PlaneFormat::kRgb8, 40, 40));
     EXPECT_EQ(strip[1], static_cast<std::byte>(CodecId::kRaw));
 }
+
+class Referring : public ::testing::TestWithParam<PlaneFormat> {
+protected:
+    /// The coding of the strip, after a round trip.
+    static StripHeader encode(const Plane& plane, const Plane& reference, CodecId codec = CodecId::kZstdFiltered) {
+        const RowBand band{0, plane.height_px};
+        const auto strip = encode_strip(plane, band, {.codec = codec, .reference = &reference});
+        Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
+        const auto result = decode_strip(strip, band, &reference, decoded);
+        EXPECT_TRUE(result) << result.error().message;
+        EXPECT_TRUE(decoded == plane);
+        const auto header = read_header(strip);
+        EXPECT_TRUE(header);
+        EXPECT_EQ(needs_reference(strip), header->needs_reference());
+        if (header->needs_reference()) {
+            EXPECT_FALSE(decode_strip(strip, band, nullptr, decoded));
+        }
+        return *header;
+    }
+};
+
+TEST_P(Referring, EqualRowsAreRepeated) {
+    const Plane plane = random_plane(GetParam(), 40, 50);
+    for (const CodecId codec : {CodecId::kRaw, CodecId::kZstdFiltered}) {
+        const StripHeader header = encode(plane, plane, codec);
+        EXPECT_EQ(header.coding, StripCoding::kRepeat);
+        EXPECT_EQ(header.body_bytes, 0U);
+    }
+}
+
+TEST_P(Referring, SmallChangesAreSentAsDifferences) {
+    const Plane reference = random_plane(GetParam(), 40, 50);
+    Plane plane = reference;
+    for (std::size_t i = 0; i < plane.bytes.size(); i += 16) {
+        plane.bytes[i] ^= std::byte{1};
+    }
+    const StripHeader header = encode(plane, reference);
+    EXPECT_EQ(header.coding, StripCoding::kZstdFiltered);
+    EXPECT_EQ(header.filter.predictor, Predictor::kReference);
+    EXPECT_LT(header.body_bytes, plane.bytes.size() / 4); // noise alone does not compress at all
+}
+
+TEST_P(Referring, OtherPicturesArePredictedFromNeighbours) {
+    const StripHeader header = encode(ramp_plane(GetParam(), 40, 50), random_plane(GetParam(), 40, 50));
+    EXPECT_FALSE(header.needs_reference());
+}
+
+std::string format_name(const ::testing::TestParamInfo<PlaneFormat>& info) {
+    return name_of(info.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(PlaneCodec, Referring, ::testing::ValuesIn(kAllFormats), format_name);
 
 TEST(PlaneCodec, StripBandsCoverEveryRow) {
     EXPECT_EQ(strip_bands(720).size(), 6U);

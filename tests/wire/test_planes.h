@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/codec/byte_filter.h"
 #include "core/lightfield/plane.h"
 
 #include <array>
@@ -74,6 +75,25 @@ inline Plane ramp_plane(PlaneFormat format, std::uint32_t width_px, std::uint32_
         plane.bytes[i] = static_cast<std::byte>(3 * (pixel % width_px) + 5 * (pixel / width_px) + 7 * b + noise);
     }
     return plane;
+}
+
+/// The filters of the first strips: files in tests/data/wire/v1 keep them readable.
+inline codec::ByteFilter first_filter(PlaneFormat format) {
+    using codec::Layout;
+    using codec::Predictor;
+    switch (format) {
+    case PlaneFormat::kF32:
+        return {Predictor::kLeft, Layout::kWords32, false};
+    case PlaneFormat::kOct2x16:
+        return {Predictor::kGradient, Layout::kWords16, false};
+    case PlaneFormat::kU32:
+        return {Predictor::kNone, Layout::kBytes, false};
+    case PlaneFormat::kR11G11B10F:
+    case PlaneFormat::kRg8:
+    case PlaneFormat::kRgb8:
+        break;
+    }
+    return {Predictor::kGradient, Layout::kBytes, false};
 }
 
 } // namespace fieldcast::testing
