@@ -5,6 +5,7 @@
 #include "core/base/host_port.h"
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
+#include "server/ops/limit_flags.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,10 +105,8 @@ void check_rendering(const Config& config, Problems& problems) {
 void check_serving(const Config& config, Problems& problems) {
     expect(problems, config.listen.port != 0 || config.port_file.has_value(), "--listen", "port 0",
            "only together with --port-file, which tells the port");
-    expect(problems, config.limits.max_sessions >= 1 && config.limits.max_sessions <= 4096, "--max-sessions",
-           config.limits.max_sessions, "1 to 4096");
-    expect(problems, config.limits.max_sessions_per_peer >= 1 && config.limits.max_sessions_per_peer <= 4096,
-           "--max-sessions-per-peer", config.limits.max_sessions_per_peer, "1 to 4096");
+    const Problems of_limits = limit_problems(config);
+    problems.insert(problems.end(), of_limits.begin(), of_limits.end());
 }
 
 /// Runs `check`, which throws UserError.

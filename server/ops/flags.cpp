@@ -5,6 +5,7 @@
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
 #include "server/ops/health_flags.h"
+#include "server/ops/limit_flags.h"
 #include "server/ops/new_token.h"
 
 #include <CLI/CLI.hpp>
@@ -106,18 +107,12 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--validation", config.has_validation, "Vulkan validation layer")->group("Rendering");
 }
 
-void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
+void add_serving_flags(CLI::App& app, FlagText& text) {
     app.add_option("--listen", text.listen,
                    "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
-    app.add_option("--max-sessions", config.limits.max_sessions, "Clients at the same time")
-        ->group("Serving")
-        ->capture_default_str();
-    app.add_option("--max-sessions-per-peer", config.limits.max_sessions_per_peer, "Of one address")
-        ->group("Serving")
-        ->capture_default_str();
     app.add_option("--metrics-listen", text.metrics_listen,
                    "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
         ->group("Serving");
@@ -206,7 +201,8 @@ struct CommandLine {
         add_scene_flags(app, text, config);
         add_image_flags(app, text, config);
         add_render_flags(app, text, config);
-        add_serving_flags(app, text, config);
+        add_serving_flags(app, text);
+        add_limit_flags(app, config);
         add_security_flags(app, text);
         add_health_flags(app, health);
         if (renders) {

@@ -30,13 +30,16 @@ constexpr milliseconds kTickInterval{50};
 constexpr milliseconds kDepartureSpread{1000};
 constexpr int kMaxStreamsPerConnection = 64;
 
-void set_transport_options(grpc::ServerBuilder& builder) {
+void set_transport_options(grpc::ServerBuilder& builder, const session::Limits& limits) {
+    const auto ms = [](milliseconds duration) { return static_cast<int>(duration.count()); };
     builder.SetMaxReceiveMessageSize(session::kMaxClientMessageBytes);
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers on one port are a mistake
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreamsPerConnection);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, ms(limits.keepalive_interval));
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, ms(limits.keepalive_timeout));
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, ms(limits.handshake_deadline));
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, ms(limits.idle_deadline));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
 }
@@ -75,7 +78,7 @@ struct GrpcServer::State {
     State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
           const access::Security& security, std::shared_ptr<metrics::Registry> owned_registry)
         : registry(std::move(owned_registry)), channels(feeds), limits(session_limits), service_metrics(*registry),
-          catalog(feeds, limits), light_field(feeds, limits, gate, service_metrics),
+          catalog(feeds, limits, *registry), light_field(feeds, limits, gate, service_metrics),
           watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }),
           collector(registry->on_collect([this](metrics::Page& page) { collect(page); })) {}
 
@@ -109,6 +112,7 @@ void GrpcServer::State::tick_until(const std::stop_token& stop) {
     std::unique_lock lock(mutex);
     while (!stop.stop_requested()) {
         tick_all(light_field.sessions());
+        catalog.tick(Clock::now());
         look_at_channels();
         never.wait_for(lock, stop, kTickInterval, [] { return false; });
     }
@@ -153,7 +157,7 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     const std::string text = to_text(address);
     grpc::ServerBuilder builder;
-    set_transport_options(builder);
+    set_transport_options(builder, limits);
     builder.AddListeningPort(text, make_credentials(security, state_->gate, state_->service_metrics), &state_->port);
     builder.RegisterService(&state_->catalog);
     builder.RegisterService(&state_->light_field);

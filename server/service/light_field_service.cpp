@@ -20,6 +20,8 @@ public:
     void OnDone() override { delete this; }
 };
 
+constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // refused peers must not fill the disk
+
 using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 
 } // namespace
@@ -27,6 +29,7 @@ using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
                                      const access::Gate& gate, ServiceMetrics& metrics)
     : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(metrics), sessions_(limits),
+      refusal_log_(RateLimit(kLogRate)),
       collector_(metrics.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
     for (const auto& channel : channels_) {
         metrics.prepare(channel->info().name);
@@ -66,20 +69,25 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     if (!identity) { // revoked in this moment
         return new Refuse(to_status(Problem::kUnauthenticated, identity.error().message));
     }
-    const auto id = sessions_.admit(peer_host(peer), *identity);
-    if (!id) {
-        metrics_.count_refused(id.error().exceeded);
-        log::warn("session refused", {{"peer", peer}, {"reason", id.error().message}});
-        return new Refuse(to_status(id.error().problem, id.error().message));
+    const auto admission = sessions_.admit(peer_host(peer), *identity);
+    if (!admission) {
+        const NoPlace& problem = admission.error();
+        metrics_.count_refused(problem.exceeded);
+        if (refusal_log_.lock()->take(std::chrono::steady_clock::now())) {
+            log::warn("session refused", {{"peer", peer}, {"reason", problem.message}});
+        }
+        return new Refuse(to_status(problem.problem, problem.message));
     }
+    const std::uint64_t id = admission->id;
     metrics_.count_opened();
-    log::info("session opened", {{"session", *id}, {"peer", peer}, {"token", identity->name}});
+    log::info("session opened", {{"session", id}, {"peer", peer}, {"token", identity->name}});
     const auto stream = Stream::open(*context, {.channels = channels_,
                                                 .limits = limits_,
+                                                .budgets = admission->budgets,
                                                 .metrics = &metrics_,
-                                                .id = *id,
+                                                .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
-    sessions_.add(*id, stream);
+    sessions_.add(id, stream);
     return stream.get();
 }
 

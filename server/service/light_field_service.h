@@ -29,6 +29,7 @@ private:
     const access::Gate& gate_;
     ServiceMetrics& metrics_;
     SessionTable sessions_;
+    Guarded<RateLimit> refusal_log_;
     metrics::Collector collector_; ///< last: reads the sessions
 };
 

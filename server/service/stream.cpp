@@ -31,7 +31,7 @@ void Stream::begin() {
                 stream->take_frame(frame);
             }
         },
-        Clock::now());
+        Clock::now(), setup_.budgets);
     pump();
 }
 
@@ -107,15 +107,22 @@ void Stream::receive() {
     if (message->has_configure()) {
         publish_counts(); // they belong to the channel that it may leave
     }
+    bool is_flooded = false;
     try {
         auto state = state_.lock();
         state->session->on_message(*message, Clock::now());
-        if (message->has_configure()) {
+        is_flooded = state->session->is_flooded();
+        if (message->has_configure() && !is_flooded) {
             log_configuration(*state->session);
         }
     } catch (const std::exception& problem) {
         log::error("session failed", {{"session", setup_.id}, {"problem", problem.what()}});
         end(to_status(Problem::kOurBug, "the server failed; see its log"), session::CloseReason::kFailed);
+    }
+    if (is_flooded) {
+        end(to_status(Problem::kExhausted, "more messages than a client may send; limit: " +
+                                               std::to_string(setup_.limits.max_messages_per_second) + " per second"),
+            session::CloseReason::kFlooding);
     }
 }
 
@@ -252,7 +259,9 @@ void Stream::log_closed(const session::SessionCounts& counts, session::CloseReas
                                  {"dropped_no_credit", drops(DropReason::kNoCredit)},
                                  {"dropped_rate_cap", drops(DropReason::kRateCap)},
                                  {"dropped_reconfigured", drops(DropReason::kReconfigured)},
-                                 {"dropped_leaving", drops(DropReason::kLeaving)}});
+                                 {"dropped_leaving", drops(DropReason::kLeaving)},
+                                 {"dropped_no_key_frame", drops(DropReason::kNoKeyFrame)},
+                                 {"dropped_no_budget", drops(DropReason::kNoBudget)}});
 }
 
 } // namespace fieldcast::service

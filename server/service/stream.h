@@ -32,6 +32,7 @@ public:
     struct Setup {
         std::vector<std::shared_ptr<feed::Feed>> channels;
         session::Limits limits;
+        session::PeerBudgets budgets;
         ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/rate_limit.h"
+#include "server/session/budget.h"
 #include "server/session/close_reason.h"
 #include "server/session/credits.h"
 #include "server/session/mailbox.h"
@@ -21,7 +23,7 @@ class Session {
 public:
     /// `channels` must not be empty. `on_frame` must lead to Session::on_frame; it may come from any thread.
     Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
-            TimePoint now);
+            TimePoint now, const PeerBudgets& budgets = {});
 
     void on_message(const v1::ClientMessage& message, TimePoint now);
     void on_frame(const feed::FramePtr& frame, TimePoint now);
@@ -42,13 +44,16 @@ public:
     bool is_overdue(TimePoint now) const { return cut_at_ && now >= *cut_at_; }
 
     /// Gives up its place in the channel: no further frames are rendered for it.
-    void end() { subscription_.end(); }
+    void end();
 
     const std::optional<Configuration>& configuration() const { return configuration_; } ///< in force
     std::uint32_t epoch() const { return epoch_; }
     const SessionCounts& counts() const { return counts_; }
     const Credits& credits() const { return credits_; }
     std::optional<CloseReason> close_reason() const { return close_reason_; } ///< set by go_away
+
+    /// The client sends more messages than it may; end the stream.
+    bool is_flooded() const { return is_flooded_; }
 
 private:
     struct Departure {
@@ -66,6 +71,8 @@ private:
     void handle(const v1::Configure& wanted);
     void handle(const v1::FrameAck& ack, TimePoint now);
     std::optional<Refusal> admit(const Configuration& wanted);
+    std::optional<std::string> subscribe(const Configuration& wanted);
+    bool is_too_much(const v1::ClientMessage& message, TimePoint now);
     void drop_old_configuration();
     bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
 
@@ -86,6 +93,11 @@ private:
     std::optional<Configuration> configuration_;
     std::uint32_t epoch_ = 0;
     Credits credits_;
+    Share bytes_;  ///< in flight
+    Share pixels_; ///< of the views that the server makes for it
+    RateLimit messages_;
+    bool is_flooded_ = false;
+    bool lacks_budget_ = false; ///< the frame in the mailbox has to wait for bytes of others
     Mailbox<feed::FramePtr> mailbox_;
     std::optional<Sending> sending_;
     std::uint64_t key_frame_id_ = 0; ///< that the client has; 0: none

@@ -71,6 +71,14 @@ std::optional<v1::ServerMessage> OpenCall::read_until(v1::ServerMessage::Message
     return message;
 }
 
+std::optional<v1::FrameChunk> OpenCall::read_frame() {
+    auto message = read_until(v1::ServerMessage::kFrameChunk);
+    while (message && !message->frame_chunk().has_trailer()) {
+        message = read_until(v1::ServerMessage::kFrameChunk);
+    }
+    return message ? std::optional(message->frame_chunk()) : std::nullopt;
+}
+
 grpc::Status OpenCall::finish() {
     while (read()) {
     }

@@ -34,6 +34,9 @@ public:
     /// The next message of that kind; empty if the stream ends before.
     std::optional<v1::ServerMessage> read_until(v1::ServerMessage::MessageCase kind);
 
+    /// Reads to the end of the next frame: its trailer; empty if the stream ends before.
+    std::optional<v1::FrameChunk> read_frame();
+
     void half_close() { stream_->WritesDone(); }
     void cancel() { context_.TryCancel(); }
 

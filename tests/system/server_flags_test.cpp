@@ -158,7 +158,8 @@ TEST(Flags, HelpHasExamplesAndEveryGroup) {
     const Invocation help = read({"--help"});
     EXPECT_THAT(help.problems, IsEmpty());
     EXPECT_EQ(help.kind, Invocation::Kind::kPrint);
-    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:", "Security:"}) {
+    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:", "Limits:",
+                                   "Security:"}) {
         EXPECT_THAT(help.text, HasSubstr(part));
     }
 }

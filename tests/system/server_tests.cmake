@@ -5,7 +5,8 @@ target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/s
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
 
 fieldcast_test(server_session_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
@@ -39,6 +40,13 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
                 ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
+    fieldcast_test(server_limits_test LABELS quick
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_hostile_test.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_limits_test.cpp
+        DEPENDS http_client server_synthetic fieldcast_server_service)
     fieldcast_test(server_security_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_security_test.cpp
