@@ -10,6 +10,7 @@ namespace fieldcast::service {
 namespace {
 
 constexpr std::array kDenialNames{"no_token", "unknown_token", "role_too_low"};
+constexpr std::array kRefusalNames{"sessions", "sessions_per_peer", "opens", "draining"};
 
 /// "PLANE_SEMANTIC_DIFFUSE" without "PLANE_SEMANTIC_" -> "diffuse"
 std::string label_of(const std::string& enum_name, std::size_t prefix_size) {
@@ -33,6 +34,12 @@ metrics::Counter& closed_counter(metrics::Registry& registry, session::CloseReas
                             {{"reason", std::string(to_text(reason))}});
 }
 
+metrics::Counter& refused_counter(metrics::Registry& registry, const std::string& reason) {
+    return registry.counter(
+        {"fieldcast_sessions_refused_total", "Sessions that were not admitted, by what was exceeded."},
+        {{"reason", reason}});
+}
+
 metrics::Counter& denied_counter(metrics::Registry& registry, access::Denial::Kind kind) {
     return registry.counter({"fieldcast_calls_denied_total", "Calls without a token that allows them, by reason."},
                             {{"reason", kDenialNames.at(static_cast<std::size_t>(kind))}});
@@ -46,6 +53,9 @@ ServiceMetrics::ServiceMetrics(metrics::Registry& registry)
     for (std::size_t i = 0; i < session::kCloseReasonCount; ++i) {
         closed_counter(registry_, static_cast<session::CloseReason>(i));
     }
+    for (const char* const reason : kRefusalNames) {
+        refused_counter(registry_, reason);
+    }
     for (std::size_t i = 0; i < kDenialNames.size(); ++i) {
         denied_counter(registry_, static_cast<access::Denial::Kind>(i));
     }
@@ -56,10 +66,7 @@ void ServiceMetrics::count_denied(access::Denial::Kind kind) {
 }
 
 void ServiceMetrics::count_refused(const std::string& reason) {
-    registry_
-        .counter({"fieldcast_sessions_refused_total", "Sessions that were not admitted, by what was exceeded."},
-                 {{"reason", reason}})
-        .add();
+    refused_counter(registry_, reason).add();
 }
 
 void ServiceMetrics::count_closed(session::CloseReason reason) {

@@ -19,6 +19,10 @@ inline constexpr std::chrono::seconds kCallDeadline{20};
 std::shared_ptr<grpc::Channel>
 connect(int port, const std::shared_ptr<grpc::ChannelCredentials>& credentials = grpc::InsecureChannelCredentials());
 
+/// In plain text, and its transport takes in no more than 64 KiB that nobody has read: otherwise gRPC lets megabytes in
+/// over a fast connection.
+std::shared_ptr<grpc::Channel> connect_with_small_window(int port);
+
 /// A client of LightField.Open that shows every message.
 class OpenCall {
 public:

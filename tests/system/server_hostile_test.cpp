@@ -45,8 +45,8 @@ protected:
 };
 
 TEST_F(Hostile, AClientThatDoesNotReadIsCut) {
-    OpenCall call(connect(served_.port()));
-    call.configure(); // 36 views are more than what transports buffer
+    OpenCall call(connect_with_small_window(served_.port()));
+    call.configure();
     ASSERT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
     v1::FrameChunk claimed;
     claimed.set_epoch(1);

@@ -71,6 +71,19 @@ target_link_libraries(running_server PUBLIC test_program http_client fieldcast_p
 find_package(nlohmann_json REQUIRED)
 fieldcast_test(operation_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
-    DEPENDS running_server nlohmann_json::nlohmann_json)
-add_dependencies(operation_process_test fieldcast-server)
-target_compile_definitions(operation_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
+    DEPENDS certificate_authority running_server nlohmann_json::nlohmann_json)
+add_dependencies(operation_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(operation_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+
+# Through the proxy of deploy/; skips where it cannot be installed. See tests/deploy.
+if(NOT FIELDCAST_SANITIZE MATCHES thread)
+    add_executable(envoy_test ${CMAKE_CURRENT_LIST_DIR}/envoy_test.cpp ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
+                   ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
+    target_link_libraries(envoy_test PRIVATE certificate_authority http_client test_program server_synthetic
+                          fieldcast_server_service fieldcast_warnings GTest::gmock GTest::gtest_main)
+    add_dependencies(envoy_test fieldcast-client)
+    target_compile_definitions(envoy_test PRIVATE FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+    gtest_discover_tests(envoy_test WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+                         PROPERTIES LABELS system TIMEOUT 180 FIXTURES_REQUIRED envoy)
+endif()
