@@ -5,6 +5,7 @@ SERVER is a built fieldcast-server. Tools that are not there are named in the sk
 tests/system: envoy_test.cpp, operation_process_test.cpp (dashboard and alerts against a live /metrics page).
 """
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -102,11 +103,12 @@ class Container(unittest.TestCase):
 
     def test_builds(self):
         need(self, "buildah")
-        result = run("buildah", "--isolation", "chroot", "--storage-driver", "vfs", "pull",
-                     "docker.io/library/debian:bookworm-slim")
-        if result.returncode != 0:
+        if os.environ.get("FIELDCAST_TEST_CONTAINER") != "1":
+            self.skipTest("compiles everything once more; set FIELDCAST_TEST_CONTAINER=1 to do so")
+        buildah = ["buildah", "--storage-driver", "vfs"]
+        if run(*buildah, "pull", "docker.io/library/debian:bookworm-slim").returncode != 0:
             self.skipTest("the base image cannot be fetched here")
-        result = subprocess.run(["buildah", "--storage-driver", "vfs", "bud", "--isolation", "chroot", "-f",
+        result = subprocess.run([*buildah, "bud", "--isolation", "chroot", "--network", "host", "-f",
                                  str(DEPLOY / "Containerfile"), "-t", "fieldcast-server-test", "."], check=False)
         self.assertEqual(0, result.returncode)
 
