@@ -12,6 +12,9 @@ using Clock = std::chrono::steady_clock;
 /// Peers whose openings are remembered; more come only if somebody has that many addresses.
 constexpr std::size_t kMaxRememberedPeers = 4096;
 
+/// All peers together may open sessions so many times as fast as one.
+constexpr double kPeersAtOnce = 10.0;
+
 NoPlace exhausted(std::string exceeded, std::string message) {
     return {.problem = Problem::kExhausted, .exceeded = std::move(exceeded), .message = std::move(message)};
 }
@@ -19,7 +22,10 @@ NoPlace exhausted(std::string exceeded, std::string message) {
 } // namespace
 
 SessionTable::SessionTable(const session::Limits& limits)
-    : limits_(limits), total_bytes_(std::make_shared<session::Budget>(limits.max_bytes_in_flight_in_total)) {}
+    : limits_(limits), total_bytes_(std::make_shared<session::Budget>(limits.max_bytes_in_flight_in_total)) {
+    state_.lock()->all_opens.emplace(RateLimit::Rate{.per_second = kPeersAtOnce * limits.max_opens_per_second_per_peer,
+                                                     .burst = static_cast<double>(limits.max_sessions)});
+}
 
 tl::expected<Admission, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
     auto state = state_.lock();
@@ -36,8 +42,8 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     if (!state.closed_because.empty()) {
         return NoPlace{.problem = Problem::kUnavailable, .exceeded = "draining", .message = state.closed_because};
     }
-    if (!may_open(state, peer)) { // first: also what is refused counts
-        return exhausted("opens", "this peer opens sessions too fast; try again in a few seconds");
+    if (const auto who = haste(state, peer)) { // first: also what is refused counts
+        return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
     }
     if (state.places.size() >= limits_.max_sessions) {
         return exhausted("sessions",
@@ -51,17 +57,20 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     return std::nullopt;
 }
 
-bool SessionTable::may_open(State& state, const std::string& peer) const {
+std::optional<std::string> SessionTable::haste(State& state, const std::string& peer) const {
     const auto now = Clock::now();
     if (state.opens.size() >= kMaxRememberedPeers) {
         std::erase_if(state.opens, [&](const auto& known) { return known.second.is_idle(now); });
     }
     if (state.opens.size() >= kMaxRememberedPeers && !state.opens.contains(peer)) {
-        return false;
+        return "too many peers open";
     }
     const RateLimit fresh({.per_second = limits_.max_opens_per_second_per_peer,
                            .burst = static_cast<double>(limits_.max_sessions_per_peer)});
-    return state.opens.try_emplace(peer, fresh).first->second.take(now);
+    if (!state.opens.try_emplace(peer, fresh).first->second.take(now)) {
+        return "this peer opens"; // and uses nothing up for others
+    }
+    return state.all_opens->take(now) ? std::nullopt : std::optional<std::string>("all peers together open");
 }
 
 session::PeerBudgets SessionTable::budgets_of(const State& state, const std::string& peer) const {

@@ -62,12 +62,13 @@ private:
     struct State {
         std::map<std::uint64_t, Place> places;
         std::map<std::string, RateLimit> opens; ///< by peer, of those that were here lately
+        std::optional<RateLimit> all_opens;
         std::uint64_t next_id = 1;
         std::string closed_because; ///< empty: open
     };
 
     std::optional<NoPlace> problem_with(State& state, const std::string& peer) const;
-    bool may_open(State& state, const std::string& peer) const;
+    std::optional<std::string> haste(State& state, const std::string& peer) const; ///< who opens too fast
     session::PeerBudgets budgets_of(const State& state, const std::string& peer) const;
 
     const session::Limits limits_;

@@ -4,6 +4,7 @@
 #include "http_client.h"
 #include "running_server.h"
 #include "server_client.h"
+#include "test_folder.h"
 
 #include <csignal>
 #include <gmock/gmock.h>

@@ -2,7 +2,9 @@
 #include "running_server.h"
 
 #include "http_client.h"
+#include "test_folder.h"
 
+#include <atomic>
 #include <thread>
 
 namespace fieldcast::test {
@@ -13,7 +15,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kStartPatience = 240s; // a software device under sanitizers on a busy machine
 
-std::vector<std::string> arguments(const TestFolder& folder, const std::vector<std::string>& flags) {
+std::vector<std::string> arguments(const std::filesystem::path& folder, const std::vector<std::string>& flags) {
     std::vector<std::string> all{"--scene",          "scenes/atelier/atelier.gltf",
                                  "--size",           "64x36",
                                  "--clock",          "frames",
@@ -27,12 +29,25 @@ std::vector<std::string> arguments(const TestFolder& folder, const std::vector<s
 
 } // namespace
 
+RunningServer::Folder::Folder() {
+    static std::atomic<int> count = 0;
+    const std::string name = "running_server_" + std::to_string(getpid()) + "_" + std::to_string(++count);
+    path = std::filesystem::path(testing::TempDir()) / name;
+    std::filesystem::remove_all(path);
+    std::filesystem::create_directories(path);
+}
+
+RunningServer::Folder::~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+}
+
 RunningServer::RunningServer(const std::string& program, const std::vector<std::string>& flags)
-    : process_(program, arguments(folder_, flags), folder_ / "server.log"),
+    : process_(program, arguments(folder_.path, flags), folder_.path / "server.log"),
       is_serving_(process_.has_said("SERVING", kStartPatience)) {
     if (is_serving_) {
-        port_ = std::stoi(text_of(folder_ / "port"));
-        metrics_port_ = std::stoi(text_of(folder_ / "metrics-port"));
+        port_ = std::stoi(text_of(folder_.path / "port"));
+        metrics_port_ = std::stoi(text_of(folder_.path / "metrics-port"));
     }
 }
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "program.h"
-#include "test_folder.h"
 
+#include <filesystem>
+#include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,16 @@ public:
     std::string log() const { return process_.text(); }
 
 private:
-    const TestFolder folder_;
+    /// Its own, beside the test's; removed at the end.
+    struct Folder {
+        Folder();
+        ~Folder();
+        Folder(const Folder&) = delete;
+        Folder& operator=(const Folder&) = delete;
+        std::filesystem::path path;
+    };
+
+    const Folder folder_;
     Program process_;
     bool is_serving_;
     int port_ = 0;

@@ -61,6 +61,18 @@ TEST(ServiceLimits, APeerMayNotOpenSessionsTooFast) {
     EXPECT_TRUE(served.shows("fieldcast_sessions_refused_total{reason=\"opens\"}", 1));
 }
 
+TEST(ServiceLimits, AllPeersTogetherMayNotOpenSessionsTooFast) {
+    ServedChannel served({.max_sessions = 2, .max_sessions_per_peer = 3, .max_opens_per_second_per_peer = 0.01});
+    for (int i = 0; i < 2; ++i) {
+        OpenCall call(connect(served.port()));
+        call.half_close();
+        EXPECT_TRUE(call.finish().ok());
+        EXPECT_TRUE(served.shows("fieldcast_sessions_closed_total{reason=\"finished\"}", i + 1.0));
+    }
+    EXPECT_THAT(OpenCall(connect(served.port())).finish().error_message(), HasSubstr("all peers together"));
+    EXPECT_TRUE(served.shows("fieldcast_sessions_refused_total{reason=\"opens\"}", 1));
+}
+
 TEST(ServiceLimits, AllSessionsTogetherHaveABudgetOfBytes) {
     ServedChannel served({.max_bytes_in_flight_in_total = 1});
     OpenCall silent(connect(served.port()));

@@ -69,7 +69,7 @@ target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
 add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
 target_link_libraries(running_server PUBLIC test_program http_client fieldcast_proto_grpc PRIVATE GTest::gtest fieldcast_warnings)
 find_package(nlohmann_json REQUIRED)
-fieldcast_test(operation_process_test LABELS gpu TIMEOUT 300
+fieldcast_test(operation_process_test LABELS gpu TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
     DEPENDS certificate_authority running_server nlohmann_json::nlohmann_json)
 add_dependencies(operation_process_test fieldcast-server fieldcast-client)
