@@ -2,6 +2,7 @@
 // Clients that misbehave: each is detected, counted by reason and closed, and a client that behaves notices nothing.
 #include "http_client.h"
 #include "relay.h"
+#include "server/session/credits.h"
 #include "served_channel.h"
 
 #include <gtest/gtest.h>
@@ -40,17 +41,47 @@ protected:
         EXPECT_TRUE(bystander_.gets_more_frames());
     }
 
+    /// 36 views of 7 KB each: more than a small window.
+    static v1::Configure large_frames() {
+        v1::Configure wanted;
+        v1::CodecPreference& preference = *wanted.add_codecs();
+        preference.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+        preference.add_codecs(v1::CODEC_RAW);
+        return wanted;
+    }
+
     ServedChannel served_{short_limits()};
     Bystander bystander_{served_.port()};
 };
 
+TEST_F(Hostile, ASlowReaderCostsItsCreditsAndGetsTheNewestFrames) {
+    constexpr double kFrameBytes = 36 * (64.0 * 36 * 3 + 1024); // payload, and more than the strips' headers need
+    constexpr int kFrames = 6;
+    OpenCall call(connect_with_small_window(served_.port()));
+    call.configure(large_frames());
+    std::uint64_t first_id = 0;
+    std::uint64_t last_id = 0;
+    for (int i = 0; i < kFrames; ++i) {
+        const auto trailer = call.read_frame();
+        ASSERT_TRUE(trailer.has_value());
+        first_id = i == 0 ? trailer->frame_id() : first_id;
+        last_id = trailer->frame_id();
+        std::this_thread::sleep_for(100ms); // ten frames of the channel
+        EXPECT_LE(served_.metric("fieldcast_bytes_in_flight{channel=\"synthetic\"}"),
+                  session::kMaxCredits * (kFrameBytes + 36 * 1024)) // and those of the bystander, compressed
+            << "what it has not read is bounded";
+        call.acknowledge(*trailer);
+    }
+    EXPECT_GT(last_id - first_id, std::uint64_t{kFrames}) << "what it missed was not sent to it later";
+    EXPECT_TRUE(bystander_.gets_more_frames());
+    call.half_close();
+    EXPECT_TRUE(call.finish().ok());
+    expect_closed_for("finished");
+}
+
 TEST_F(Hostile, AClientThatDoesNotReadIsCut) {
     OpenCall call(connect_with_small_window(served_.port()));
-    v1::Configure wanted; // 36 views of 7 KB each are more than its window
-    v1::CodecPreference& preference = *wanted.add_codecs();
-    preference.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
-    preference.add_codecs(v1::CODEC_RAW);
-    call.configure(wanted);
+    call.configure(large_frames());
     ASSERT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
     expect_closed_for("not_reading");
     EXPECT_FALSE(call.finish().ok());
