@@ -42,9 +42,6 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     if (!state.closed_because.empty()) {
         return NoPlace{.problem = Problem::kUnavailable, .exceeded = "draining", .message = state.closed_because};
     }
-    if (const auto who = haste(state, peer)) { // first: also what is refused counts
-        return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
-    }
     if (state.places.size() >= limits_.max_sessions) {
         return exhausted("sessions",
                          "all " + std::to_string(limits_.max_sessions) + " sessions of this server are in use");
@@ -53,6 +50,9 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_sessions_per_peer) {
         return exhausted("sessions_per_peer", "all " + std::to_string(limits_.max_sessions_per_peer) +
                                                   " sessions that one peer may have are in use");
+    }
+    if (const auto who = haste(state, peer)) { // last: only what would be admitted counts
+        return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
     }
     return std::nullopt;
 }
