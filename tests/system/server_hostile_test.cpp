@@ -34,6 +34,8 @@ session::Limits short_limits() {
 
 class Hostile : public testing::Test {
 protected:
+    void SetUp() override { ASSERT_TRUE(bystander_.gets_more_frames()); }
+
     /// That one session was closed for `reason`, nobody but the bystander is left, and the bystander notices nothing.
     void expect_closed_for(const char* reason) {
         EXPECT_TRUE(served_.shows(closed(reason), 1));
