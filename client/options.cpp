@@ -2,8 +2,9 @@
 #include "client/options.h"
 #include "client/play/scene_cache.h"
 
+#include "core/base/bearer_token.h"
+
 #include <CLI/CLI.hpp>
-#include <cstdlib>
 #include <numbers>
 #include <sstream>
 
@@ -160,9 +161,7 @@ void read_access(play::ServerOptions& server) {
     if (has_tls_flags && !access.uses_tls) {
         throw UserError("--tls-ca, --tls-cert, --tls-key and --tls-name need --tls or --server https://HOST:PORT");
     }
-    if (const char* const token = std::getenv("FIELDCAST_TOKEN")) { // no flag: other users see a process' arguments
-        access.token = token;
-    }
+    access.token = token_of_environment();
 }
 
 void read_text(const FlagText& text, Options& options) {

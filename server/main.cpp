@@ -4,10 +4,13 @@
 #include "core/scene/bundle.h"
 #include "server/channel/channel.h"
 #include "server/channel/offline.h"
+#include "server/metrics/http_endpoint.h"
+#include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
 #include "server/ops/port_file.h"
 #include "server/ops/signals.h"
 #include "server/service/grpc_server.h"
+#include "server/service/health_probe.h"
 
 #include <algorithm>
 #include <array>
@@ -28,11 +31,11 @@ constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its d
 
 using Channels = std::vector<std::unique_ptr<channel::Channel>>;
 
-Channels start_channels(const gpu::Device& device, const ops::Config& config) {
+Channels start_channels(const gpu::Device& device, const ops::Config& config, metrics::Registry& registry) {
     Channels channels;
     for (const ops::ChannelChoice& choice : config.channels) {
         const auto begin = Clock::now();
-        channels.push_back(std::make_unique<channel::Channel>(device, config, choice));
+        channels.push_back(std::make_unique<channel::Channel>(device, config, choice, registry));
         const feed::ChannelInfo& info = channels.back()->feed()->info();
         const std::chrono::duration<double> duration = Clock::now() - begin;
         log::info("channel ready", {{"channel", info.name},
@@ -53,6 +56,34 @@ std::vector<std::shared_ptr<feed::Feed>> feeds_of(const Channels& channels) {
     }
     return feeds;
 }
+
+/// What the process says about itself, whatever it serves.
+void collect_process(metrics::Page& page) {
+    page.add_gauge({"fieldcast_build_info", "1; the version stands in the label."}, {{"version", FIELDCAST_VERSION}},
+                   1.0);
+    metrics::add_process_metrics(page);
+}
+
+/// /metrics, if it was asked for, and its port file.
+class MetricsServer {
+public:
+    MetricsServer(const ops::Config& config, const access::Gate& gate, metrics::Registry& registry)
+        : collector_(registry.on_collect(collect_process)) {
+        if (!config.metrics_listen) {
+            return;
+        }
+        endpoint_.emplace(*config.metrics_listen, config.security, gate, [&] { return registry.page().text(); });
+        log::info("metrics", {{"listen", to_text({.host = config.metrics_listen->host, .port = endpoint_->port()})}});
+        if (config.metrics_port_file) {
+            port_file_.emplace(*config.metrics_port_file, endpoint_->port());
+        }
+    }
+
+private:
+    metrics::Collector collector_;
+    std::optional<metrics::HttpEndpoint> endpoint_;
+    std::optional<ops::PortFile> port_file_;
+};
 
 /// Until a signal, or until a channel fails.
 bool serve(const ops::StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
@@ -79,12 +110,15 @@ void drain(const ops::StopSignals& signals, service::GrpcServer& server, const s
 }
 
 int run(const ops::Config& config, const ops::StopSignals& signals) {
+    log::set_format(config.log_format);
     log::set_level(config.log_level);
     const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
-    const Channels channels = start_channels(device, config);
+    const auto registry = std::make_shared<metrics::Registry>();
+    const Channels channels = start_channels(device, config, *registry);
     const auto feeds = feeds_of(channels);
-    service::GrpcServer server(config.listen, feeds, config.limits, config.security);
+    service::GrpcServer server(config.listen, feeds, config.limits, config.security, registry);
+    const MetricsServer metrics_server(config, server.gate(), *registry);
     std::optional<ops::PortFile> port_file;
     if (config.port_file) {
         port_file.emplace(*config.port_file, server.port());
@@ -98,8 +132,15 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     return is_signal ? kOk : kMachineFailed;
 }
 
+int probe(const service::HealthQuestion& question) {
+    const auto problem = service::health_problem(question);
+    std::cout << problem.value_or("SERVING") << '\n';
+    return problem ? kMachineFailed : kOk;
+}
+
 /// Files instead of a service; several channels get a folder each.
 int render(const ops::Config& config, const ops::OfflineJob& job, const ops::StopSignals& signals) {
+    log::set_format(config.log_format);
     log::set_level(config.log_level);
     const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
@@ -140,6 +181,8 @@ int start(int argc, char** argv) {
     case ops::Invocation::Kind::kCheck:
         std::cout << "the configuration is fine\n";
         return kOk;
+    case ops::Invocation::Kind::kHealth:
+        return probe(invocation.health);
     case ops::Invocation::Kind::kRender:
         return render(invocation.config, invocation.job, signals);
     case ops::Invocation::Kind::kServe:

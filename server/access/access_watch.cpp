@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::chrono::seconds kInterval{1};
 
-void log_certificate(const CertificateFacts& facts) {
-    log::info("certificate in use", {{"subject", facts.subject}, {"expires", to_text(facts.expires)}});
-}
-
 } // namespace
 
 AccessWatch::AccessWatch(const Security& security, Gate& gate, std::function<void()> on_new_tokens)
@@ -29,11 +25,16 @@ AccessWatch::AccessWatch(const Security& security, Gate& gate, std::function<voi
     }
     if (security_.certificates) {
         certificate_stamps_ = certificate_stamps();
-        log_certificate(check_certificate(*security_.certificates, std::chrono::system_clock::now()));
+        take_note(check_certificate(*security_.certificates, std::chrono::system_clock::now()));
     }
     if (security_.tokens || security_.certificates) {
         thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
     }
+}
+
+void AccessWatch::take_note(const CertificateFacts& facts) {
+    *expiry_.lock() = facts.expires;
+    log::info("certificate in use", {{"subject", facts.subject}, {"expires", to_text(facts.expires)}});
 }
 
 std::vector<FileStamp> AccessWatch::certificate_stamps() const {
@@ -82,7 +83,7 @@ void AccessWatch::look_at_certificates() {
     }
     certificate_stamps_ = std::move(stamps);
     try {
-        log_certificate(check_certificate(*security_.certificates, std::chrono::system_clock::now()));
+        take_note(check_certificate(*security_.certificates, std::chrono::system_clock::now()));
     } catch (const std::exception& problem) {
         log::error("certificate not usable", {{"problem", problem.what()}});
     }

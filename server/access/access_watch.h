@@ -26,7 +26,11 @@ public:
     /// UserError if a file is not usable now.
     AccessWatch(const Security& security, Gate& gate, std::function<void()> on_new_tokens);
 
+    /// When the certificate in use expires, if there is one.
+    std::optional<std::chrono::system_clock::time_point> certificate_expiry() const { return *expiry_.lock(); }
+
 private:
+    void take_note(const CertificateFacts& facts);
     std::vector<FileStamp> certificate_stamps() const;
     void watch(const std::stop_token& stop);
     void look_at_tokens();
@@ -37,6 +41,7 @@ private:
     std::function<void()> on_new_tokens_;
     FileStamp token_stamp_;
     std::vector<FileStamp> certificate_stamps_;
+    mutable Guarded<std::optional<std::chrono::system_clock::time_point>> expiry_;
     std::jthread thread_;
 };
 

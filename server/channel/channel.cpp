@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "server/channel/frame_encoder.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -36,9 +37,10 @@ template <class Work> void run(feed::Feed& feed, const Work& work) {
 
 } // namespace
 
-Channel::Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice)
+Channel::Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice,
+                 metrics::Registry& registry)
     : renderer_(device, config, choice), clock_(config, renderer_.scene()),
-      feed_(std::make_shared<feed::Feed>(renderer_.info())),
+      feed_(std::make_shared<feed::Feed>(renderer_.info())), metrics_(registry, feed_->info().name),
       encode_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { encode_loop(stop); }); }),
       render_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { render_loop(stop); }); }) {}
 
@@ -61,6 +63,7 @@ void Channel::render_loop(const std::stop_token& stop) {
         RenderedFrame frame = renderer_.render(++frame_id, clock_.next(begin), demand);
         log_frame(frame);
         const std::uint64_t invalid_samples = renderer_.invalid_sample_count();
+        metrics_.count_rendered(frame, invalid_samples - std::min(invalid_samples, reported_samples));
         if (invalid_samples > reported_samples) {
             log::warn("invalid samples", {{"channel", feed_->info().name}, {"count", invalid_samples}});
             reported_samples = invalid_samples;
@@ -87,6 +90,7 @@ void Channel::encode_loop(const std::stop_token& stop) {
         const auto begin = Clock::now();
         const feed::FramePtr encoded = encoder.encode(std::move(*frame), begin);
         const std::chrono::duration<double, std::milli> encode_time = Clock::now() - begin;
+        metrics_.observe_encoding(encode_time);
         log::debug(
             "frame encoded",
             {{"frame", encoded->header.frame_id}, {"key_frame", encoded->key_frame_id}, {"ms", encode_time.count()}});

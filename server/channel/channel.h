@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/channel/channel_clock.h"
+#include "server/channel/channel_metrics.h"
 #include "server/channel/frame_renderer.h"
 #include "server/channel/handoff.h"
 #include "server/feed/feed.h"
@@ -15,9 +16,10 @@ namespace fieldcast::channel {
 /// One thread renders, one encodes and publishes the frame before; neither ever waits for a client.
 class Channel {
 public:
-    /// Ready to serve when constructed; rendering starts with the first subscriber. `device` and `config` must outlive
-    /// it. Throws UserError if the scene is not usable.
-    Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice);
+    /// Ready to serve when constructed; rendering starts with the first subscriber. `device`, `config` and
+    /// `registry` must outlive it. Throws UserError if the scene is not usable.
+    Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice,
+            metrics::Registry& registry);
     ~Channel();
 
     const std::shared_ptr<feed::Feed>& feed() const { return feed_; }
@@ -31,6 +33,7 @@ private:
     FrameRenderer renderer_;
     ChannelClock clock_;
     std::shared_ptr<feed::Feed> feed_;
+    ChannelMetrics metrics_;
     Handoff<RenderedFrame> rendered_;
     std::jthread encode_thread_;
     std::jthread render_thread_;

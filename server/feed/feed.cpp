@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/feed/feed.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace fieldcast::feed {
@@ -32,6 +33,9 @@ tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Fe
             return tl::unexpected(std::move(*problem));
         }
         id = state->next_id++;
+        if (state->subscribers.empty()) {
+            state->waiting_since = std::chrono::steady_clock::now();
+        }
         state->subscribers.emplace(id, Subscriber{.wish = wish, .callback = std::move(shared_callback)});
     }
     feed->demand_changed_.notify_all();
@@ -83,6 +87,7 @@ void Feed::publish(const FramePtr& frame) {
     std::vector<std::shared_ptr<const FrameCallback>> callbacks;
     {
         auto state = state_.lock();
+        state->waiting_since = std::chrono::steady_clock::now();
         state->latest = {.frame_id = frame->header.frame_id, .scene_time_ns = frame->header.scene_time_ns};
         for (const auto& [id, subscriber] : state->subscribers) {
             callbacks.push_back(subscriber.callback);
@@ -95,6 +100,12 @@ void Feed::publish(const FramePtr& frame) {
 
 LatestFrame Feed::latest() {
     return state_.lock()->latest;
+}
+
+std::chrono::nanoseconds Feed::waiting_time(std::chrono::steady_clock::time_point now) {
+    auto state = state_.lock();
+    return state->subscribers.empty() ? std::chrono::nanoseconds(0)
+                                      : std::max(now - state->waiting_since, std::chrono::nanoseconds(0));
 }
 
 std::size_t Feed::subscriber_count() {

@@ -52,6 +52,9 @@ public:
     void publish(const FramePtr& frame);
 
     LatestFrame latest();
+
+    /// How long somebody has been waiting for a frame; 0: nobody is.
+    std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now);
     std::size_t subscriber_count();
 
     /// The channel cannot render any more; the reason was logged.
@@ -69,6 +72,7 @@ private:
         std::map<std::uint64_t, Subscriber> subscribers;
         std::uint64_t next_id = 1;
         LatestFrame latest;
+        std::chrono::steady_clock::time_point waiting_since; ///< the last frame, or the first subscriber after a pause
     };
 
     std::optional<std::string> budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const;

@@ -2,8 +2,10 @@
 #include "server/ops/config.h"
 
 #include "core/base/error.h"
+#include "core/base/host_port.h"
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
+#include "server/ops/limit_flags.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,10 +105,8 @@ void check_rendering(const Config& config, Problems& problems) {
 void check_serving(const Config& config, Problems& problems) {
     expect(problems, config.listen.port != 0 || config.port_file.has_value(), "--listen", "port 0",
            "only together with --port-file, which tells the port");
-    expect(problems, config.limits.max_sessions >= 1 && config.limits.max_sessions <= 4096, "--max-sessions",
-           config.limits.max_sessions, "1 to 4096");
-    expect(problems, config.limits.max_sessions_per_peer >= 1 && config.limits.max_sessions_per_peer <= 4096,
-           "--max-sessions-per-peer", config.limits.max_sessions_per_peer, "1 to 4096");
+    const Problems of_limits = limit_problems(config);
+    problems.insert(problems.end(), of_limits.begin(), of_limits.end());
 }
 
 /// Runs `check`, which throws UserError.
@@ -124,6 +124,14 @@ void check_access(const Config& config, Problems& problems) {
                                         .has_tokens = security.tokens.has_value()};
     if (const auto problem = access::listening_problem(config.listen.host, protection)) {
         problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
+    }
+    if (config.metrics_listen) {
+        const auto problem = access::listening_problem(config.metrics_listen->host, protection);
+        if (problem && !is_loopback(config.metrics_listen->host)) {
+            problems.push_back("--metrics-listen " + to_text(*config.metrics_listen) + " " + *problem);
+        }
+        expect(problems, config.metrics_listen->port != 0 || config.metrics_port_file.has_value(), "--metrics-listen",
+               "port 0", "only together with --metrics-port-file, which tells the port");
     }
     if (security.tokens) {
         expect_usable(problems, "--tokens", [&] { access::TokenList::read(*security.tokens); });

@@ -149,6 +149,13 @@ void read_listen(const FlagText& text, Config& config, Problems& problems) {
     } else {
         problems.push_back("--listen " + text.listen + ": write HOST:PORT, as in 127.0.0.1:50151 or [::1]:50151");
     }
+    config.metrics_listen = parse_host_port(text.metrics_listen);
+    if (!config.metrics_listen && !text.metrics_listen.empty()) {
+        problems.push_back("--metrics-listen " + text.metrics_listen + ": write HOST:PORT, as in 127.0.0.1:9464");
+    }
+    if (!text.metrics_port_file.empty()) {
+        config.metrics_port_file = text.metrics_port_file;
+    }
 }
 
 void read_security(const FlagText& text, Config& config, Problems& problems) {
@@ -235,6 +242,9 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);
     read_word("--sampler", text.sampler, kSamplers, config.settings.sampler, problems);
     read_word("--clock", text.clock, kClocks, config.clock, problems);
+    constexpr std::array kFormats{Word{.word = "text", .value = log::Format::kText},
+                                  Word{.word = "json", .value = log::Format::kJson}};
+    read_word("--log-format", text.log_format, kFormats, config.log_format, problems);
     read_word("--log-level", text.log_level, kLevels, config.log_level, problems);
 }
 

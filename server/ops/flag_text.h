@@ -36,7 +36,10 @@ struct FlagText {
     std::string tls_key;
     std::string tls_client_ca;
     std::string tokens;
+    std::string metrics_listen;
+    std::string metrics_port_file;
     std::string log_level = "info";
+    std::string log_format = "text";
 };
 
 /// Defaults as the preset `text.preset` has them; nothing if there is no such preset.

@@ -5,6 +5,8 @@
 #include "core/lightfield/presets.h"
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
+#include "server/ops/health_flags.h"
+#include "server/ops/limit_flags.h"
 #include "server/ops/new_token.h"
 
 #include <CLI/CLI.hpp>
@@ -22,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
   fieldcast-server render --help                                                # what else it can write
   fieldcast-server --make-token alice view
+  fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
   fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
 
 TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input.)";
@@ -128,16 +131,17 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--validation", config.has_validation, "Vulkan validation layer")->group("Rendering");
 }
 
-void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
+void add_serving_flags(CLI::App& app, FlagText& text) {
     app.add_option("--listen", text.listen,
                    "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
-    app.add_option("--max-sessions", config.limits.max_sessions, "Clients at the same time")
-        ->group("Serving")
-        ->capture_default_str();
-    app.add_option("--max-sessions-per-peer", config.limits.max_sessions_per_peer, "Of one address")
+    app.add_option("--metrics-listen", text.metrics_listen,
+                   "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
+        ->group("Serving");
+    app.add_option("--metrics-port-file", text.metrics_port_file, "Gets the port number of /metrics")->group("Serving");
+    app.add_option("--log-format", text.log_format, "text, or json: one object per line")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--log-level", text.log_level, "debug, info, warn or error")
@@ -154,6 +158,17 @@ void add_security_flags(CLI::App& app, FlagText& text) {
         ->group("Security");
     app.add_option("--tokens", text.tokens, "Who may call: lines of NAME ROLE sha256:HEX, see --make-token")
         ->group("Security");
+}
+
+void add_health_flags(CLI::App& app, HealthText& text) {
+    const auto add = [&](const char* flag, std::string& value, const char* help) {
+        app.add_option(flag, value, help)->group("Probing another server")->configurable(false);
+    };
+    add("--health", text.server,
+        "HOST:PORT or https://HOST:PORT: exit with 0 if that server says SERVING, else with 1");
+    add("--health-ca", text.ca, "PEM file: who may have signed its certificate; without it: the system's authorities");
+    add("--health-name", text.name, "Name in its certificate, if it is not the dialled one");
+    add("--health-token-file", text.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
 }
 
 void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>& products) {
@@ -190,6 +205,7 @@ struct CommandLine {
     bool only_check = false;
     bool only_print = false;
     std::vector<std::string> new_token;
+    HealthText health;
     bool renders = false; ///< "render" came first
     OfflineJob job;
     std::vector<std::string> products{"quilt", "views", "exr"};
@@ -211,8 +227,10 @@ struct CommandLine {
         add_scene_flags(app, text, config);
         add_image_flags(app, text, config);
         add_render_flags(app, text, config);
-        add_serving_flags(app, text, config);
+        add_serving_flags(app, text);
+        add_limit_flags(app, config);
         add_security_flags(app, text);
+        add_health_flags(app, health);
         if (renders) {
             add_offline_flags(app, job, products);
         }
@@ -297,6 +315,11 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
         early.problems = parse(typed, arguments);
         if (early.problems.empty() && !typed.new_token.empty()) {
             early.text = new_token_text(typed.new_token.at(0), typed.new_token.at(1));
+            return early;
+        }
+        if (early.problems.empty() && !typed.health.server.empty()) {
+            early.kind = Invocation::Kind::kHealth;
+            early.health = read_health(typed.health, typed.text.tls_cert, typed.text.tls_key);
             return early;
         }
     } catch (const CLI::CallForVersion& version) {

@@ -3,6 +3,7 @@
 
 #include "server/ops/config.h"
 #include "server/ops/offline_job.h"
+#include "server/service/health_probe.h"
 
 #include <string>
 #include <vector>
@@ -13,12 +14,14 @@ namespace fieldcast::ops {
 struct Invocation {
     enum class Kind : std::uint8_t {
         kServe,
-        kPrint, ///< only print `text`: --help, --version, --print-config, --make-token
-        kCheck, ///< only validate
+        kPrint,  ///< only print `text`: --help, --version, --print-config, --make-token
+        kCheck,  ///< only validate
+        kHealth, ///< only ask the server of `health`
         kRender, ///< `job`, without serving
     };
     Kind kind = Kind::kServe;
     Config config;
+    service::HealthQuestion health;
     OfflineJob job;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;

@@ -2,6 +2,7 @@
 #include "server/service/catalog_service.h"
 
 #include "core/wire/convert.h"
+#include "server/service/messages.h"
 #include "server/service/status.h"
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 namespace fieldcast::service {
 
 namespace {
-
-constexpr std::size_t kSceneChunkBytes = 1U << 20;
 
 v1::ServerLimits limits_message(const std::vector<std::shared_ptr<feed::Feed>>& channels,
                                 const session::Limits& limits) {
@@ -46,41 +45,6 @@ v1::Channel channel_message(const feed::ChannelInfo& info) {
     return message;
 }
 
-/// Sends a bundle chunk by chunk; one chunk in memory at a time.
-class SceneWriter final : public grpc::ServerWriteReactor<v1::SceneChunk> {
-public:
-    SceneWriter(std::shared_ptr<const std::vector<std::byte>> bundle, std::uint64_t offset)
-        : bundle_(std::move(bundle)), offset_(offset) {
-        write_next();
-    }
-
-    void OnWriteDone(bool ok) override {
-        if (!ok) {
-            return Finish(to_status(Problem::kUnavailable, "the stream broke"));
-        }
-        if (offset_ >= bundle_->size()) {
-            return Finish(grpc::Status::OK);
-        }
-        write_next();
-    }
-
-    void OnDone() override { delete this; }
-
-private:
-    void write_next() {
-        const std::size_t count = std::min(kSceneChunkBytes, bundle_->size() - offset_);
-        chunk_.set_total_bytes(bundle_->size());
-        chunk_.set_offset(offset_);
-        chunk_.set_data(bundle_->data() + offset_, count);
-        offset_ += count;
-        StartWrite(&chunk_);
-    }
-
-    std::shared_ptr<const std::vector<std::byte>> bundle_;
-    std::size_t offset_;
-    v1::SceneChunk chunk_;
-};
-
 class RefuseFetch final : public grpc::ServerWriteReactor<v1::SceneChunk> {
 public:
     explicit RefuseFetch(const grpc::Status& status) { Finish(status); }
@@ -89,8 +53,9 @@ public:
 
 } // namespace
 
-CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& channels, const session::Limits& limits)
-    : channels_(channels) {
+CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& channels, const session::Limits& limits,
+                               metrics::Registry& registry)
+    : channels_(channels), limits_(limits), downloads_(limits, registry) {
     server_info_.set_version(FIELDCAST_VERSION);
     server_info_.add_modes(v1::DELIVERY_MODE_VIEWS);
     server_info_.add_modes(v1::DELIVERY_MODE_SCENE);
@@ -120,7 +85,7 @@ grpc::ServerUnaryReactor* CatalogService::ListChannels(grpc::CallbackServerConte
     return reactor;
 }
 
-grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::FetchScene(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::FetchScene(grpc::CallbackServerContext* context,
                                                                      const v1::FetchSceneRequest* request) {
     const std::string& hash = request->scene_hash();
     const auto shows_scene = [&](const std::shared_ptr<feed::Feed>& channel) {
@@ -142,7 +107,24 @@ grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::FetchScene(grpc::Callb
                                                                    " is beyond the end of the bundle, " +
                                                                    std::to_string(bundle->size()) + " bytes"));
     }
-    return new SceneWriter(bundle, request->offset());
+    return send(*context, bundle, request->offset());
+}
+
+grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::send(grpc::CallbackServerContext& context,
+                                                               std::shared_ptr<const std::vector<std::byte>> bundle,
+                                                               std::uint64_t offset) {
+    const auto id = downloads_.admit(peer_host(context.peer()));
+    if (!id) {
+        return new RefuseFetch(to_status(Problem::kExhausted, id.error()));
+    }
+    const auto writer = SceneWriter::open(context, {.bundle = std::move(bundle),
+                                                    .offset = offset,
+                                                    .stall_deadline = limits_.stall_deadline,
+                                                    .on_done = [this, id = *id](DownloadEnd end, std::uint64_t bytes) {
+                                                        downloads_.remove(id, end, bytes);
+                                                    }});
+    downloads_.add(*id, writer);
+    return writer.get();
 }
 
 } // namespace fieldcast::service

@@ -35,19 +35,27 @@ Problem problem_of(access::Denial::Kind kind) {
     return is_known ? Problem::kForbidden : Problem::kUnauthenticated;
 }
 
+/// Whether health is told to whoever asks: supervisors and proxies of the same machine hold no tokens.
+enum class HealthAccess : std::uint8_t { kWithToken, kOpen };
+
 /// Asks the gate about every call.
 class TokenCheck final : public grpc::AuthMetadataProcessor {
 public:
-    explicit TokenCheck(const access::Gate& gate) : gate_(gate) {}
+    TokenCheck(const access::Gate& gate, ServiceMetrics& metrics, HealthAccess health)
+        : gate_(gate), metrics_(metrics), health_(health) {}
 
     bool IsBlocking() const override { return false; }
 
     grpc::Status Process(const InputMetadata& headers, grpc::AuthContext*, OutputMetadata*, OutputMetadata*) override {
         const std::string_view method = find(headers, ":path").value_or("");
+        if (health_ == HealthAccess::kOpen && method.starts_with("/grpc.health.v1.Health/")) {
+            return grpc::Status::OK;
+        }
         const auto identity = gate_.admit(find(headers, "authorization"), method);
         if (identity) {
             return grpc::Status::OK;
         }
+        metrics_.count_denied(identity.error().kind);
         log(method, identity.error());
         return to_status(problem_of(identity.error().kind), identity.error().message);
     }
@@ -60,6 +68,8 @@ private:
     }
 
     const access::Gate& gate_;
+    ServiceMetrics& metrics_;
+    const HealthAccess health_;
     Guarded<RateLimit> log_rate_{RateLimit(kLogRate)};
 };
 
@@ -79,7 +89,8 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const access::Certifica
 
 } // namespace
 
-std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate) {
+std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate,
+                                                          ServiceMetrics& metrics) {
     std::shared_ptr<grpc::ServerCredentials> credentials;
     if (security.certificates) {
         credentials = tls_credentials(*security.certificates);
@@ -89,7 +100,8 @@ std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security
         return grpc::InsecureServerCredentials();
     }
     if (security.tokens) {
-        credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(gate));
+        const auto health = security.certificates ? HealthAccess::kWithToken : HealthAccess::kOpen; // open: on loopback
+        credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(gate, metrics, health));
     }
     return credentials;
 }

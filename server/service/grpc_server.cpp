@@ -9,6 +9,7 @@
 #include "server/service/light_field_service.h"
 #include "server/service/transport_log.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
@@ -29,13 +30,16 @@ constexpr milliseconds kTickInterval{50};
 constexpr milliseconds kDepartureSpread{1000};
 constexpr int kMaxStreamsPerConnection = 64;
 
-void set_transport_options(grpc::ServerBuilder& builder) {
+void set_transport_options(grpc::ServerBuilder& builder, const session::Limits& limits) {
+    const auto ms = [](milliseconds duration) { return static_cast<int>(duration.count()); };
     builder.SetMaxReceiveMessageSize(session::kMaxClientMessageBytes);
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers on one port are a mistake
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreamsPerConnection);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, ms(limits.keepalive_interval));
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, ms(limits.keepalive_timeout));
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, ms(limits.handshake_deadline));
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, ms(limits.idle_deadline));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
 }
@@ -51,20 +55,10 @@ void tick_all(SessionTable& sessions) {
     }
 }
 
-void tick_until(const std::stop_token& stop, SessionTable& sessions) {
-    std::mutex mutex;
-    std::condition_variable_any never;
-    std::unique_lock lock(mutex);
-    while (!stop.stop_requested()) {
-        tick_all(sessions);
-        never.wait_for(lock, stop, kTickInterval, [] { return false; });
-    }
-}
-
 void send_revoked_away(SessionTable& sessions, const access::Gate& gate) {
     const auto streams = sessions.streams_without_token(gate);
     for (const auto& stream : streams) {
-        stream->go_away("the token of this session was revoked", Clock::now());
+        stream->go_away("the token of this session was revoked", Clock::now(), session::CloseReason::kRevoked);
     }
     log::info("sessions without a token sent away", {{"count", streams.size()}});
 }
@@ -81,31 +75,90 @@ void check_protection(const HostPort& address, const access::Security& security)
 } // namespace
 
 struct GrpcServer::State {
-    State(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
-          const access::Security& security)
-        : catalog(channels, limits), light_field(std::move(channels), limits, gate),
-          watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }) {}
+    State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
+          const access::Security& security, std::shared_ptr<metrics::Registry> owned_registry)
+        : registry(std::move(owned_registry)), channels(feeds), limits(session_limits), service_metrics(*registry),
+          catalog(feeds, limits, *registry), light_field(feeds, limits, gate, service_metrics),
+          watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }),
+          collector(registry->on_collect([this](metrics::Page& page) { collect(page); })) {}
 
+    void tick_until(const std::stop_token& stop);
+    void look_at_channels();
+    void start_draining();
+    void collect(metrics::Page& page) const;
+
+    const std::shared_ptr<metrics::Registry> registry;
+    const std::vector<std::shared_ptr<feed::Feed>> channels;
+    const session::Limits limits;
+    ServiceMetrics service_metrics;
     access::Gate gate;
     CatalogService catalog;
     LightFieldService light_field;
     access::AccessWatch watch;
+    struct Health {
+        bool is_draining = false;
+        bool is_serving = false;
+    };
+    mutable Guarded<Health> health;
+    metrics::Collector collector;
     int port = 0;
     std::unique_ptr<grpc::Server> server;
     std::jthread ticker;
 };
 
-GrpcServer::GrpcServer(const HostPort& address, std::vector<std::shared_ptr<feed::Feed>> channels,
-                       const session::Limits& limits, const access::Security& security) {
+void GrpcServer::State::tick_until(const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any never;
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+        tick_all(light_field.sessions());
+        catalog.tick(Clock::now());
+        look_at_channels();
+        never.wait_for(lock, stop, kTickInterval, [] { return false; });
+    }
+}
+
+/// Health follows what clients see: a channel whose device hangs has not failed, but does not serve either.
+void GrpcServer::State::look_at_channels() {
+    const auto now = Clock::now();
+    const auto is_silent = [&](const auto& channel) { return channel->waiting_time(now) >= limits.channel_deadline; };
+    const bool serves = std::ranges::none_of(channels, is_silent);
+    auto state = health.lock(); // also while it is told, so that draining has the last word
+    if (!state->is_draining && serves != state->is_serving) {
+        serves ? log::info("frames come again", {})
+               : log::error("no frames although clients wait", {{"ms", limits.channel_deadline.count()}});
+        state->is_serving = serves;
+        server->GetHealthCheckService()->SetServingStatus(serves); // of all services, and of the empty name
+    }
+}
+
+void GrpcServer::State::start_draining() {
+    auto state = health.lock();
+    *state = {.is_draining = true, .is_serving = false};
+    server->GetHealthCheckService()->SetServingStatus(false);
+}
+
+void GrpcServer::State::collect(metrics::Page& page) const {
+    page.add_gauge({"fieldcast_serving", "1: health says SERVING."}, {}, health.lock()->is_serving ? 1.0 : 0.0);
+    if (const auto expiry = watch.certificate_expiry()) {
+        const std::chrono::duration<double> since_epoch = expiry->time_since_epoch();
+        page.add_gauge({"fieldcast_certificate_expiry_timestamp_seconds", "When the certificate expires, since 1970."},
+                       {}, since_epoch.count());
+    }
+}
+
+GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_ptr<feed::Feed>>& channels,
+                       const session::Limits& limits, const access::Security& security,
+                       std::shared_ptr<metrics::Registry> registry) {
     log_transport();
     check_protection(address, security);
-    state_ = std::make_unique<State>(std::move(channels), limits, security);
+    state_ = std::make_unique<State>(channels, limits, security, std::move(registry));
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     const std::string text = to_text(address);
     grpc::ServerBuilder builder;
-    set_transport_options(builder);
-    builder.AddListeningPort(text, make_credentials(security, state_->gate), &state_->port);
+    set_transport_options(builder, limits);
+    builder.AddListeningPort(text, make_credentials(security, state_->gate, state_->service_metrics), &state_->port);
     builder.RegisterService(&state_->catalog);
     builder.RegisterService(&state_->light_field);
     state_->server = builder.BuildAndStart();
@@ -115,8 +168,8 @@ GrpcServer::GrpcServer(const HostPort& address, std::vector<std::shared_ptr<feed
     grpc::HealthCheckServiceInterface& health = *state_->server->GetHealthCheckService();
     health.SetServingStatus(v1::Catalog::service_full_name(), true);
     health.SetServingStatus(v1::LightField::service_full_name(), true);
-    state_->ticker = std::jthread(
-        [&sessions = state_->light_field.sessions()](const std::stop_token& stop) { tick_until(stop, sessions); });
+    state_->health.lock()->is_serving = true;
+    state_->ticker = std::jthread([&state = *state_](const std::stop_token& stop) { state.tick_until(stop); });
 }
 
 GrpcServer::~GrpcServer() {
@@ -131,7 +184,7 @@ int GrpcServer::port() const {
 }
 
 void GrpcServer::begin_drain(const std::string& reason) {
-    state_->server->GetHealthCheckService()->SetServingStatus(false);
+    state_->start_draining();
     SessionTable& sessions = state_->light_field.sessions();
     sessions.close("the server is going away: " + reason);
     const auto streams = sessions.streams();
@@ -145,6 +198,10 @@ void GrpcServer::begin_drain(const std::string& reason) {
 
 bool GrpcServer::wait_until_drained(Clock::time_point deadline) {
     return state_->light_field.sessions().wait_until_empty(deadline);
+}
+
+const access::Gate& GrpcServer::gate() const {
+    return state_->gate;
 }
 
 std::size_t GrpcServer::session_count() {

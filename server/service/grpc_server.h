@@ -4,6 +4,7 @@
 #include "core/base/host_port.h"
 #include "server/access/access_watch.h"
 #include "server/feed/feed.h"
+#include "server/metrics/registry.h"
 #include "server/session/limits.h"
 
 #include <chrono>
@@ -17,14 +18,16 @@ namespace fieldcast::service {
 inline const HostPort kDefaultListen{.host = "127.0.0.1", .port = 50151};
 
 /// The gRPC edge: Catalog, LightField, health and reflection. Health says SERVING from the constructor on, so make it
-/// when every channel has rendered. Heartbeats and deadlines run on a thread of its own, another one follows changes of
+/// when every channel has rendered; it says NOT_SERVING while the server drains, and while somebody waits in vain for
+/// frames of a channel. Heartbeats and deadlines run on a thread of its own, another one follows changes of
 /// tokens and certificates.
 class GrpcServer {
 public:
     /// Throws UserError if `address` has to be protected and is not, or a file of `security` is not usable, and
     /// std::runtime_error if the address cannot be listened on.
-    GrpcServer(const HostPort& address, std::vector<std::shared_ptr<feed::Feed>> channels,
-               const session::Limits& limits, const access::Security& security = {});
+    GrpcServer(const HostPort& address, const std::vector<std::shared_ptr<feed::Feed>>& channels,
+               const session::Limits& limits, const access::Security& security = {},
+               std::shared_ptr<metrics::Registry> registry = std::make_shared<metrics::Registry>());
     /// Cuts what is still open.
     ~GrpcServer();
 
@@ -37,6 +40,7 @@ public:
     bool wait_until_drained(std::chrono::steady_clock::time_point deadline);
 
     std::size_t session_count();
+    const access::Gate& gate() const; ///< for other ways in, as long as this lives
 
 private:
     struct State;

@@ -6,6 +6,9 @@
 #include "server/service/messages.h"
 #include "server/service/status.h"
 
+#include <array>
+#include <map>
+
 namespace fieldcast::service {
 
 namespace {
@@ -17,7 +20,48 @@ public:
     void OnDone() override { delete this; }
 };
 
+constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // refused peers must not fill the disk
+
+using SessionKey = std::array<std::string, 3>; // channel, mode, grid
+
 } // namespace
+
+LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
+                                     const access::Gate& gate, ServiceMetrics& metrics)
+    : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(metrics), sessions_(limits),
+      refusal_log_(RateLimit(kLogRate)),
+      collector_(metrics.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
+    for (const auto& channel : channels_) {
+        metrics.prepare(channel->info().name);
+    }
+}
+
+void LightFieldService::collect(metrics::Page& page) {
+    std::map<SessionKey, std::uint64_t> sessions;
+    std::map<std::string, std::array<std::uint64_t, 2>> in_flight; // frames and bytes by channel
+    for (const auto& channel : channels_) {
+        in_flight[channel->info().name] = {};
+    }
+    for (const auto& stream : sessions_.streams()) {
+        stream->publish_counts();
+        const SessionFacts facts = stream->facts();
+        ++sessions[{facts.channel, facts.mode, facts.grid}];
+        if (!facts.channel.empty()) {
+            in_flight[facts.channel][0] += facts.frames_in_flight;
+            in_flight[facts.channel][1] += facts.bytes_in_flight;
+        }
+    }
+    for (const auto& [key, count] : sessions) {
+        page.add_gauge({"fieldcast_sessions", "Open sessions, by what they get; empty labels: not configured yet."},
+                       {{"channel", key[0]}, {"mode", key[1]}, {"grid", key[2]}}, static_cast<double>(count));
+    }
+    for (const auto& [channel, amounts] : in_flight) {
+        page.add_gauge({"fieldcast_frames_in_flight", "Frames that were begun and are not acknowledged."},
+                       {{"channel", channel}}, static_cast<double>(amounts[0]));
+        page.add_gauge({"fieldcast_bytes_in_flight", "Bytes of frames that were begun and are not acknowledged."},
+                       {{"channel", channel}}, static_cast<double>(amounts[1]));
+    }
+}
 
 RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     const std::string peer = context->peer();
@@ -25,17 +69,25 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     if (!identity) { // revoked in this moment
         return new Refuse(to_status(Problem::kUnauthenticated, identity.error().message));
     }
-    const auto id = sessions_.admit(peer_host(peer), *identity);
-    if (!id) {
-        log::warn("session refused", {{"peer", peer}, {"reason", id.error().message}});
-        return new Refuse(to_status(id.error().problem, id.error().message));
+    const auto admission = sessions_.admit(peer_host(peer), *identity);
+    if (!admission) {
+        const NoPlace& problem = admission.error();
+        metrics_.count_refused(problem.exceeded);
+        if (refusal_log_.lock()->take(std::chrono::steady_clock::now())) {
+            log::warn("session refused", {{"peer", peer}, {"reason", problem.message}});
+        }
+        return new Refuse(to_status(problem.problem, problem.message));
     }
-    log::info("session opened", {{"session", *id}, {"peer", peer}, {"token", identity->name}});
-    const auto stream = Stream::open(
-        *context, {.channels = channels_, .limits = limits_, .id = *id, .on_done = [this](std::uint64_t done) {
-                       sessions_.remove(done);
-                   }});
-    sessions_.add(*id, stream);
+    const std::uint64_t id = admission->id;
+    metrics_.count_opened();
+    log::info("session opened", {{"session", id}, {"peer", peer}, {"token", identity->name}});
+    const auto stream = Stream::open(*context, {.channels = channels_,
+                                                .limits = limits_,
+                                                .budgets = admission->budgets,
+                                                .metrics = &metrics_,
+                                                .id = id,
+                                                .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
+    sessions_.add(id, stream);
     return stream.get();
 }
 

@@ -7,28 +7,79 @@ namespace fieldcast::service {
 
 namespace {
 
-tl::unexpected<NoPlace> exhausted(std::string message) {
-    return tl::unexpected(NoPlace{.problem = Problem::kExhausted, .message = std::move(message)});
+using Clock = std::chrono::steady_clock;
+
+/// Peers whose openings are remembered; more come only if somebody has that many addresses.
+constexpr std::size_t kMaxRememberedPeers = 4096;
+
+/// All peers together may open sessions so many times as fast as one.
+constexpr double kPeersAtOnce = 10.0;
+
+NoPlace exhausted(std::string exceeded, std::string message) {
+    return {.problem = Problem::kExhausted, .exceeded = std::move(exceeded), .message = std::move(message)};
 }
 
 } // namespace
 
-tl::expected<std::uint64_t, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
+SessionTable::SessionTable(const session::Limits& limits)
+    : limits_(limits), total_bytes_(std::make_shared<session::Budget>(limits.max_bytes_in_flight_in_total)) {
+    state_.lock()->all_opens.emplace(RateLimit::Rate{.per_second = kPeersAtOnce * limits.max_opens_per_second_per_peer,
+                                                     .burst = static_cast<double>(limits.max_sessions)});
+}
+
+tl::expected<Admission, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
     auto state = state_.lock();
-    if (!state->closed_because.empty()) {
-        return tl::unexpected(NoPlace{.problem = Problem::kUnavailable, .message = state->closed_because});
+    if (auto problem = problem_with(*state, peer)) {
+        return tl::unexpected(std::move(*problem));
     }
-    if (state->places.size() >= limits_.max_sessions) {
-        return exhausted("all " + std::to_string(limits_.max_sessions) + " sessions of this server are in use");
+    Admission admission{.id = state->next_id++, .budgets = budgets_of(*state, peer)};
+    state->places.emplace(admission.id,
+                          Place{.peer = peer, .identity = identity, .budgets = admission.budgets, .stream = {}});
+    return admission;
+}
+
+std::optional<NoPlace> SessionTable::problem_with(State& state, const std::string& peer) const {
+    if (!state.closed_because.empty()) {
+        return NoPlace{.problem = Problem::kUnavailable, .exceeded = "draining", .message = state.closed_because};
     }
-    const auto of_peer = std::ranges::count_if(state->places, [&](const auto& p) { return p.second.peer == peer; });
+    if (state.places.size() >= limits_.max_sessions) {
+        return exhausted("sessions",
+                         "all " + std::to_string(limits_.max_sessions) + " sessions of this server are in use");
+    }
+    const auto of_peer = std::ranges::count_if(state.places, [&](const auto& p) { return p.second.peer == peer; });
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_sessions_per_peer) {
-        return exhausted("all " + std::to_string(limits_.max_sessions_per_peer) +
-                         " sessions that one peer may have are in use");
+        return exhausted("sessions_per_peer", "all " + std::to_string(limits_.max_sessions_per_peer) +
+                                                  " sessions that one peer may have are in use");
     }
-    const std::uint64_t id = state->next_id++;
-    state->places.emplace(id, Place{.peer = peer, .identity = identity, .stream = {}});
-    return id;
+    if (const auto who = haste(state, peer)) { // last: only what would be admitted counts
+        return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> SessionTable::haste(State& state, const std::string& peer) const {
+    const auto now = Clock::now();
+    if (state.opens.size() >= kMaxRememberedPeers) {
+        std::erase_if(state.opens, [&](const auto& known) { return known.second.is_idle(now); });
+    }
+    if (state.opens.size() >= kMaxRememberedPeers && !state.opens.contains(peer)) {
+        return "too many peers open";
+    }
+    const RateLimit fresh({.per_second = limits_.max_opens_per_second_per_peer,
+                           .burst = static_cast<double>(limits_.max_sessions_per_peer)});
+    if (!state.opens.try_emplace(peer, fresh).first->second.take(now)) {
+        return "this peer opens"; // and uses nothing up for others
+    }
+    return state.all_opens->take(now) ? std::nullopt : std::optional<std::string>("all peers together open");
+}
+
+session::PeerBudgets SessionTable::budgets_of(const State& state, const std::string& peer) const {
+    const auto other = std::ranges::find_if(state.places, [&](const auto& p) { return p.second.peer == peer; });
+    if (other != state.places.end()) {
+        return other->second.budgets;
+    }
+    return {.bytes = std::make_shared<session::Budget>(limits_.max_bytes_in_flight_per_peer, total_bytes_),
+            .pixels = std::make_shared<session::Budget>(limits_.max_pixels_per_peer)};
 }
 
 void SessionTable::add(std::uint64_t id, const std::shared_ptr<Stream>& stream) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "core/base/rate_limit.h"
 #include "server/access/gate.h"
 #include "server/service/status.h"
 #include "server/service/stream.h"
@@ -17,16 +18,23 @@ namespace fieldcast::service {
 /// Why a session was not admitted.
 struct NoPlace {
     Problem problem = Problem::kExhausted;
+    std::string exceeded; ///< the limit's name, for the metrics
     std::string message;
+};
+
+/// A session that was admitted.
+struct Admission {
+    std::uint64_t id = 0;
+    session::PeerBudgets budgets; ///< shared by all sessions of its peer
 };
 
 /// All open streams, and the limits on their number. Thread-safe.
 class SessionTable {
 public:
-    explicit SessionTable(const session::Limits& limits) : limits_(limits) {}
+    explicit SessionTable(const session::Limits& limits);
 
-    /// A place for a session of `peer`, which is `identity`: its id, or why there is none.
-    tl::expected<std::uint64_t, NoPlace> admit(const std::string& peer, const access::Identity& identity);
+    /// A place for a session of `peer`, which is `identity`, or why there is none.
+    tl::expected<Admission, NoPlace> admit(const std::string& peer, const access::Identity& identity);
 
     /// `stream` takes the place `id`.
     void add(std::uint64_t id, const std::shared_ptr<Stream>& stream);
@@ -48,15 +56,23 @@ private:
     struct Place {
         std::string peer;
         access::Identity identity;
+        session::PeerBudgets budgets;
         std::weak_ptr<Stream> stream;
     };
     struct State {
         std::map<std::uint64_t, Place> places;
+        std::map<std::string, RateLimit> opens; ///< by peer, of those that were here lately
+        std::optional<RateLimit> all_opens;
         std::uint64_t next_id = 1;
         std::string closed_because; ///< empty: open
     };
 
+    std::optional<NoPlace> problem_with(State& state, const std::string& peer) const;
+    std::optional<std::string> haste(State& state, const std::string& peer) const; ///< who opens too fast
+    session::PeerBudgets budgets_of(const State& state, const std::string& peer) const;
+
     const session::Limits limits_;
+    const std::shared_ptr<session::Budget> total_bytes_; ///< in flight
     std::condition_variable removed_;
     Guarded<State> state_;
 };

@@ -31,7 +31,7 @@ void Stream::begin() {
                 stream->take_frame(frame);
             }
         },
-        Clock::now());
+        Clock::now(), setup_.budgets);
     pump();
 }
 
@@ -61,6 +61,7 @@ Stream::Actions Stream::decide(session::TimePoint now) {
     } catch (const std::exception& problem) {
         log::error("session failed", {{"session", setup_.id}, {"problem", problem.what()}});
         state->verdict = to_status(Problem::kOurBug, "the server failed; see its log");
+        state->failure = session::CloseReason::kFailed;
     }
     if (actions.write) {
         state->is_writing = true;
@@ -74,10 +75,11 @@ Stream::Actions Stream::decide(session::TimePoint now) {
     return actions;
 }
 
-void Stream::end(const grpc::Status& status) {
+void Stream::end(const grpc::Status& status, std::optional<session::CloseReason> why) {
     auto state = state_.lock();
     if (!state->verdict) {
         state->verdict = status;
+        state->failure = why;
     }
 }
 
@@ -99,17 +101,28 @@ void Stream::receive() {
     const auto message = parse_client_message(incoming_);
     incoming_.Clear();
     if (!message) {
-        return end(to_status(Problem::kInvalid, "these bytes are no fieldcast.v1.ClientMessage"));
+        return end(to_status(Problem::kInvalid, "these bytes are no fieldcast.v1.ClientMessage"),
+                   session::CloseReason::kInvalid);
     }
+    if (message->has_configure()) {
+        publish_counts(); // they belong to the channel that it may leave
+    }
+    bool is_flooded = false;
     try {
         auto state = state_.lock();
         state->session->on_message(*message, Clock::now());
-        if (message->has_configure()) {
+        is_flooded = state->session->is_flooded();
+        if (message->has_configure() && !is_flooded) {
             log_configuration(*state->session);
         }
     } catch (const std::exception& problem) {
         log::error("session failed", {{"session", setup_.id}, {"problem", problem.what()}});
-        end(to_status(Problem::kOurBug, "the server failed; see its log"));
+        end(to_status(Problem::kOurBug, "the server failed; see its log"), session::CloseReason::kFailed);
+    }
+    if (is_flooded) {
+        end(to_status(Problem::kExhausted, "more messages than a client may send; limit: " +
+                                               std::to_string(setup_.limits.max_messages_per_second) + " per second"),
+            session::CloseReason::kFlooding);
     }
 }
 
@@ -144,13 +157,47 @@ void Stream::OnWriteDone(bool ok) {
 }
 
 void Stream::OnCancel() {
+    state_.lock()->was_cancelled = true;
     end(to_status(Problem::kUnavailable, "cancelled"));
     pump();
 }
 
-void Stream::go_away(const std::string& reason, session::TimePoint at) {
-    state_.lock()->session->go_away(reason, at);
+void Stream::go_away(const std::string& reason, session::TimePoint at, session::CloseReason why) {
+    state_.lock()->session->go_away(reason, at, why);
     pump();
+}
+
+void Stream::publish_counts() {
+    session::SessionCounts news;
+    std::string channel;
+    {
+        auto state = state_.lock();
+        const auto& configuration = state->session->configuration();
+        channel = configuration ? configuration->feed->info().name : "";
+        news = difference(state->session->counts(), state->published);
+        state->published = state->session->counts();
+    }
+    setup_.metrics->add(channel, news);
+}
+
+SessionFacts Stream::facts() {
+    SessionFacts facts;
+    auto state = state_.lock();
+    facts.frames_in_flight = state->session->credits().in_flight();
+    facts.bytes_in_flight = state->session->credits().bytes_in_flight();
+    if (const auto& configuration = state->session->configuration()) {
+        const ViewGrid& grid = configuration->view_set.grid;
+        facts.channel = configuration->feed->info().name;
+        facts.mode = configuration->mode == v1::DELIVERY_MODE_SCENE ? "scene" : "views";
+        facts.grid = std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
+    }
+    return facts;
+}
+
+session::CloseReason Stream::close_reason(const State& state) {
+    const bool was_cancelled = state.was_cancelled && !state.is_cut;
+    const auto usual = was_cancelled ? session::CloseReason::kCancelled : session::CloseReason::kFinished;
+    return state.failure ? *state.failure : state.session->close_reason().value_or(usual);
 }
 
 void Stream::tick() {
@@ -171,6 +218,9 @@ bool Stream::pin_if_overdue(session::TimePoint now) {
     if (!state->verdict) {
         state->verdict = to_status(Problem::kTooLate,
                                    is_stuck ? "the client does not read" : "the client did not half-close in time");
+        if (is_stuck) {
+            state->failure = session::CloseReason::kNotReading;
+        }
     }
     state->is_cut = state->is_pinned = state->is_writing; // otherwise Finish is enough
     return state->is_pinned;
@@ -183,20 +233,25 @@ void Stream::cut() {
 
 void Stream::OnDone() {
     session::SessionCounts counts;
+    session::CloseReason reason = session::CloseReason::kFinished;
+    publish_counts();
     {
         auto state = state_.lock();
         counts = state->session->counts();
+        reason = close_reason(*state);
         state->session->end();
     }
-    log_closed(counts);
+    log_closed(counts, reason);
+    setup_.metrics->count_closed(reason);
     setup_.on_done(setup_.id);
     self_.reset(); // may delete this
 }
 
-void Stream::log_closed(const session::SessionCounts& counts) const {
+void Stream::log_closed(const session::SessionCounts& counts, session::CloseReason reason) const {
     using session::DropReason;
-    const auto drops = [&](DropReason reason) { return counts.drops.of(reason); };
+    const auto drops = [&](DropReason drop) { return counts.drops.of(drop); };
     log::info("session closed", {{"session", setup_.id},
+                                 {"reason", to_text(reason)},
                                  {"frames", counts.frames_sent},
                                  {"bytes", counts.bytes_sent},
                                  {"failed_frames", counts.frames_failed},
@@ -204,7 +259,9 @@ void Stream::log_closed(const session::SessionCounts& counts) const {
                                  {"dropped_no_credit", drops(DropReason::kNoCredit)},
                                  {"dropped_rate_cap", drops(DropReason::kRateCap)},
                                  {"dropped_reconfigured", drops(DropReason::kReconfigured)},
-                                 {"dropped_leaving", drops(DropReason::kLeaving)}});
+                                 {"dropped_leaving", drops(DropReason::kLeaving)},
+                                 {"dropped_no_key_frame", drops(DropReason::kNoKeyFrame)},
+                                 {"dropped_no_budget", drops(DropReason::kNoBudget)}});
 }
 
 } // namespace fieldcast::service

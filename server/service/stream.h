@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "server/service/service_metrics.h"
 #include "server/session/session.h"
 
 #include <functional>
@@ -15,6 +16,15 @@ namespace fieldcast::service {
 
 using RawReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
+/// What one session holds at a moment.
+struct SessionFacts {
+    std::string channel; ///< empty: not configured yet
+    std::string mode;    ///< "views", "scene"; empty: not configured yet
+    std::string grid;    ///< "4x4"; empty: not configured yet
+    std::uint32_t frames_in_flight = 0;
+    std::uint64_t bytes_in_flight = 0;
+};
+
 /// One LightField.Open call: moves messages between gRPC and a Session. One write and one read in flight at most.
 /// Reactions return at once. Lives until gRPC has called OnDone and nobody else holds it.
 class Stream final : public RawReactor, public std::enable_shared_from_this<Stream> {
@@ -22,6 +32,8 @@ public:
     struct Setup {
         std::vector<std::shared_ptr<feed::Feed>> channels;
         session::Limits limits;
+        session::PeerBudgets budgets;
+        ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`
     };
@@ -31,7 +43,12 @@ public:
 
     /// Must be called several times per heartbeat interval.
     void tick();
-    void go_away(const std::string& reason, session::TimePoint at);
+    void go_away(const std::string& reason, session::TimePoint at,
+                 session::CloseReason why = session::CloseReason::kDrained);
+
+    /// Adds what has happened since the last time to the metrics.
+    void publish_counts();
+    SessionFacts facts();
 
     void OnReadDone(bool ok) override;
     void OnWriteDone(bool ok) override;
@@ -49,6 +66,9 @@ private:
         bool is_pinned = false; ///< somebody uses the context: do not finish
         bool is_cut = false;    ///< TryCancel was, or is being, called
         bool is_finished = false;
+        bool was_cancelled = false;
+        std::optional<session::CloseReason> failure; ///< what the stream itself ended for
+        session::SessionCounts published;            ///< is in the metrics
     };
     /// What to do once the lock is released.
     struct Actions {
@@ -64,11 +84,12 @@ private:
     Actions decide(session::TimePoint now);
     void receive();
     void take_frame(const feed::FramePtr& frame);
-    void end(const grpc::Status& status);
+    void end(const grpc::Status& status, std::optional<session::CloseReason> why = std::nullopt);
+    static session::CloseReason close_reason(const State& state);
     bool pin_if_overdue(session::TimePoint now);
     void cut();
     void log_configuration(const session::Session& session) const;
-    void log_closed(const session::SessionCounts& counts) const;
+    void log_closed(const session::SessionCounts& counts, session::CloseReason reason) const;
 
     grpc::CallbackServerContext& context_;
     const Setup setup_;

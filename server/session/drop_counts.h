@@ -16,15 +16,21 @@ enum class DropReason : std::uint8_t {
     kReconfigured, ///< made for an earlier configuration, or aborted because of a new one
     kLeaving,      ///< the server had said GoingAway
     kNoKeyFrame,   ///< it refers to a key frame that the client did not get
+    kNoBudget,     ///< too many bytes unacknowledged by its peer, or by everybody
 };
-inline constexpr std::size_t kDropReasonCount = 6;
+inline constexpr std::size_t kDropReasonCount = 7;
 inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames{
-    "sending", "no_credit", "rate_cap", "reconfigured", "leaving", "no_key_frame"};
+    "sending", "no_credit", "rate_cap", "reconfigured", "leaving", "no_key_frame", "no_budget"};
 
 /// Dropped frames of one session by reason.
 class DropCounts {
 public:
     void add(DropReason reason) { ++counts_[static_cast<std::size_t>(reason)]; }
+    void subtract(const DropCounts& earlier) {
+        for (std::size_t i = 0; i < kDropReasonCount; ++i) {
+            counts_[i] -= earlier.counts_[i];
+        }
+    }
     std::uint64_t of(DropReason reason) const { return counts_[static_cast<std::size_t>(reason)]; }
 
 private:

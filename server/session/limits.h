@@ -11,14 +11,29 @@ namespace fieldcast::session {
 struct Limits {
     std::uint32_t max_sessions = 64;
     std::uint32_t max_sessions_per_peer = 64;
-    std::uint64_t max_view_set_pixels = 72ULL * 1280 * 720; ///< rows · columns · width · height
-    std::uint64_t max_bytes_in_flight = 256ULL << 20;
+    double max_opens_per_second_per_peer = 10.0; ///< sessions, on average; max_sessions_per_peer of them at once
+    std::uint64_t max_view_set_pixels = 72ULL * 1280 * 720;     ///< rows · columns · width · height of one session
+    std::uint64_t max_pixels_per_peer = 4 * 72ULL * 1280 * 720; ///< the same, over the sessions of one peer
+    std::uint64_t max_bytes_in_flight = 256ULL << 20;           ///< of one session
+    std::uint64_t max_bytes_in_flight_per_peer = 1024ULL << 20; ///< over the sessions of one peer
+    std::uint64_t max_bytes_in_flight_in_total = 4096ULL << 20; ///< over all sessions
+    std::uint32_t max_scene_downloads = 16;
+    std::uint32_t max_scene_downloads_per_peer = 4;
+    double max_messages_per_second = 1000.0; ///< of one session, on average; twice as many at once
     std::uint32_t max_chunk_bytes = 2U << 20;
     std::chrono::milliseconds configure_deadline{10'000}; ///< from opening to the first Configured
     std::chrono::milliseconds stall_deadline{30'000};     ///< a frame unacknowledged, or a message unsent
     std::chrono::milliseconds going_away_deadline{5'000}; ///< from GoingAway to the forced end
+    std::chrono::milliseconds channel_deadline{120'000};  ///< no frame although somebody waits: not healthy
+    std::chrono::milliseconds handshake_deadline{10'000}; ///< from the connection to its first HTTP/2 settings
+    std::chrono::milliseconds idle_deadline{300'000};     ///< a connection without calls
+    std::chrono::milliseconds keepalive_interval{20'000}; ///< silence after which a connection is asked
+    std::chrono::milliseconds keepalive_timeout{10'000};  ///< for its answer
     std::chrono::milliseconds heartbeat_interval{250};    ///< the protocol asks for at most 500 ms
 };
+
+/// A Configure counts as so many messages: it changes what is rendered.
+inline constexpr int kConfigureWeight = 50;
 
 /// Largest message of a client, bytes. A Configure is below 1 KiB.
 inline constexpr int kMaxClientMessageBytes = 64 << 10;

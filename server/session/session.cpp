@@ -24,15 +24,28 @@ nanoseconds decode_time(const v1::FrameAck& ack) {
     return nanoseconds(is_known ? ack.decoded_ns() - ack.last_byte_ns() : 0);
 }
 
+/// Pixels of the views that the server makes for a client.
+std::uint64_t made_pixels(const Configuration& configuration) {
+    const wire::ViewSet& set = configuration.view_set;
+    const bool makes_views = configuration.mode == v1::DELIVERY_MODE_VIEWS;
+    return makes_views ? static_cast<std::uint64_t>(set.grid.view_count()) * set.width_px * set.height_px : 0;
+}
+
 } // namespace
 
 Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
-                 TimePoint now)
+                 TimePoint now, const PeerBudgets& budgets)
     : channels_(std::move(channels)), limits_(limits), on_frame_(std::move(on_frame)),
-      credits_(1.0, limits.max_bytes_in_flight), next_heartbeat_(now + limits.heartbeat_interval),
+      credits_(1.0, limits.max_bytes_in_flight), bytes_(budgets.bytes), pixels_(budgets.pixels),
+      messages_({.per_second = limits.max_messages_per_second, .burst = 2.0 * limits.max_messages_per_second}),
+      next_heartbeat_(now + limits.heartbeat_interval),
       configure_by_(now + limits.configure_deadline) {}
 
 void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
+    is_flooded_ = is_flooded_ || is_too_much(message, now);
+    if (is_flooded_) {
+        return;
+    }
     switch (message.message_case()) {
     case v1::ClientMessage::kConfigure:
         return handle(message.configure());
@@ -49,10 +62,20 @@ void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
     }
 }
 
+bool Session::is_too_much(const v1::ClientMessage& message, TimePoint now) {
+    for (int i = message.has_configure() ? kConfigureWeight : 1; i > 0; --i) {
+        if (!messages_.take(now)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void Session::handle(const v1::Configure& wanted) {
     auto chosen = negotiate(wanted, channels_, limits_);
     std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
     if (refusal) {
+        ++counts_.refusals;
         *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
         return;
     }
@@ -73,16 +96,34 @@ std::optional<Refusal> Session::admit(const Configuration& wanted) {
     if (departure_ || cut_at_) {
         return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "", .message = "the server is going away"};
     }
+    const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
+    const std::uint64_t new_pixels = made_pixels(wanted);
+    if (!pixels_.resize(std::max(old_pixels, new_pixels))) { // both, until it is known which of them it will be
+        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions of " +
+                         "this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
+                         " that one peer may have");
+    }
+    const auto problem = subscribe(wanted);
+    pixels_.resize(problem ? old_pixels : new_pixels);
+    return problem ? std::optional(exhausted(*problem)) : std::nullopt;
+}
+
+std::optional<std::string> Session::subscribe(const Configuration& wanted) {
     if (subscription_.feed() == wanted.feed) {
-        auto problem = subscription_.change(wanted.wish);
-        return problem ? std::optional(exhausted(std::move(*problem))) : std::nullopt;
+        return subscription_.change(wanted.wish);
     }
     auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
     if (!subscription) {
-        return exhausted(std::move(subscription.error()));
+        return std::move(subscription.error());
     }
     subscription_ = std::move(*subscription);
     return std::nullopt;
+}
+
+void Session::end() {
+    subscription_.end();
+    pixels_.resize(0);
+    bytes_.resize(0);
 }
 
 void Session::drop_old_configuration() {
@@ -92,6 +133,7 @@ void Session::drop_old_configuration() {
         aborted.set_epoch(epoch_);
         aborted.set_reason(v1::ABORT_REASON_RECONFIGURED);
         credits_.give_back({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        bytes_.resize(credits_.bytes_in_flight());
         counts_.drops.add(DropReason::kReconfigured);
         sending_.reset();
     }
@@ -103,6 +145,7 @@ void Session::drop_old_configuration() {
 void Session::handle(const v1::FrameAck& ack, TimePoint now) {
     const bool is_first =
         credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
+    bytes_.resize(credits_.bytes_in_flight());
     if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
         ++counts_.frames_failed;
         if (ack.epoch() == epoch_) {
@@ -121,7 +164,9 @@ void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
         return;
     }
     if (mailbox_.put(frame)) {
-        counts_.drops.add(sending_ ? DropReason::kSending : DropReason::kNoCredit);
+        counts_.drops.add(sending_        ? DropReason::kSending
+                          : lacks_budget_ ? DropReason::kNoBudget
+                                          : DropReason::kNoCredit);
     }
 }
 
@@ -140,19 +185,22 @@ bool Session::is_too_soon(TimePoint now) {
     return false;
 }
 
-void Session::go_away(const std::string& reason, TimePoint at) {
+void Session::go_away(const std::string& reason, TimePoint at, CloseReason why) {
     if (!departure_ && !cut_at_) {
         departure_ = Departure{.reason = reason, .at = at};
+        close_reason_ = why;
     }
 }
 
 void Session::on_tick(TimePoint now) {
     if (!configuration_ && now >= configure_by_) {
-        go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now);
+        go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now,
+                CloseReason::kNotConfigured);
     }
     const auto oldest = credits_.oldest();
     if (oldest && now - *oldest >= limits_.stall_deadline) {
-        go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now);
+        go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now,
+                CloseReason::kStalled);
     }
 }
 
@@ -195,6 +243,7 @@ v1::ServerMessage Session::depart(TimePoint now) {
     departure_.reset();
     cut_at_ = now + limits_.going_away_deadline;
     subscription_.end();
+    pixels_.resize(0);
     if (mailbox_.take()) {
         counts_.drops.add(DropReason::kLeaving);
     }
@@ -213,6 +262,7 @@ v1::ServerMessage Session::heartbeat() const {
 }
 
 void Session::start_frame(TimePoint now) {
+    lacks_budget_ = false;
     if (mailbox_.peek() == nullptr || !credits_.allow(0)) {
         return;
     }
@@ -227,9 +277,32 @@ void Session::start_frame(TimePoint now) {
     if (!credits_.allow(frame.payload_bytes)) {
         return; // stays in the mailbox, where a newer one may replace it
     }
+    lacks_budget_ = !bytes_.resize(credits_.bytes_in_flight() + frame.payload_bytes);
+    if (lacks_budget_) {
+        return; // likewise
+    }
     const feed::FramePtr encoded = *mailbox_.take();
     credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
-    sending_ = Sending{.frame = std::move(frame), .next_chunk = 0, .times = encoded->times};
+    auto plane_bytes = plane_bytes_of(*encoded, frame);
+    sending_ = Sending{
+        .frame = std::move(frame), .next_chunk = 0, .times = encoded->times, .plane_bytes = std::move(plane_bytes)};
+}
+
+std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::EncodedFrame& frame,
+                                                                   const wire::WireFrame& chunks) const {
+    std::map<wire::PlaneChoice, std::uint64_t> bytes;
+    if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+        const bool has_key_frame = has_key_frame_of(frame);
+        for (const wire::PlaneChoice& choice : planes->choices) {
+            for (const wire::EncodedStrip& strip : frame.source->find(choice)->strips) {
+                bytes[choice] += (has_key_frame ? strip.best : strip.alone).bytes->size(); // as in `source_chunks`
+            }
+        }
+        return bytes;
+    }
+    const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
+    bytes[{.semantic = PlaneSemantic::kColour, .codec = views.format.codec}] = chunks.payload_bytes;
+    return bytes;
 }
 
 wire::WireFrame Session::chunks_of(const feed::EncodedFrame& frame) const {
@@ -271,6 +344,9 @@ wire::WireChunk Session::next_chunk(TimePoint now) {
     wire::WireChunk trailer = wire::trailer_chunk(sending.frame, sending.times);
     counts_.bytes_sent += trailer.size();
     ++counts_.frames_sent;
+    for (const auto& [choice, bytes] : sending.plane_bytes) {
+        counts_.plane_bytes[choice] += bytes;
+    }
     credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
     if (sending.frame.key_frame_id == sending.frame.frame_id) {
         set_key_frame(sending.frame.frame_id); // what follows on the stream arrives after it

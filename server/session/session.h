@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/rate_limit.h"
+#include "server/session/budget.h"
+#include "server/session/close_reason.h"
 #include "server/session/credits.h"
-#include "server/session/drop_counts.h"
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
+#include "server/session/session_counts.h"
 
 #include <deque>
 #include <optional>
@@ -13,14 +16,6 @@
 
 namespace fieldcast::session {
 
-/// What happened to one client, for its closing log line.
-struct SessionCounts {
-    std::uint64_t frames_sent = 0; ///< completely
-    std::uint64_t bytes_sent = 0;
-    std::uint64_t frames_failed = 0; ///< the client could not decode them
-    DropCounts drops;
-};
-
 /// One client: its configuration, what it is owed, and the next message to write. Knows no transport: whoever owns it
 /// hands in messages and frames, and calls next() whenever the previous message has been written.
 /// Not thread-safe. Memory is bounded: one frame in the mailbox, one being sent, kMaxQueuedAnswers answers.
@@ -28,7 +23,7 @@ class Session {
 public:
     /// `channels` must not be empty. `on_frame` must lead to Session::on_frame; it may come from any thread.
     Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
-            TimePoint now);
+            TimePoint now, const PeerBudgets& budgets = {});
 
     void on_message(const v1::ClientMessage& message, TimePoint now);
     void on_frame(const feed::FramePtr& frame, TimePoint now);
@@ -40,7 +35,7 @@ public:
     std::optional<wire::WireChunk> next(TimePoint now);
 
     /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
-    void go_away(const std::string& reason, TimePoint at);
+    void go_away(const std::string& reason, TimePoint at, CloseReason why = CloseReason::kDrained);
 
     /// Watches deadlines; call it several times per heartbeat interval.
     void on_tick(TimePoint now);
@@ -49,11 +44,16 @@ public:
     bool is_overdue(TimePoint now) const { return cut_at_ && now >= *cut_at_; }
 
     /// Gives up its place in the channel: no further frames are rendered for it.
-    void end() { subscription_.end(); }
+    void end();
 
     const std::optional<Configuration>& configuration() const { return configuration_; } ///< in force
     std::uint32_t epoch() const { return epoch_; }
     const SessionCounts& counts() const { return counts_; }
+    const Credits& credits() const { return credits_; }
+    std::optional<CloseReason> close_reason() const { return close_reason_; } ///< set by go_away
+
+    /// The client sends more messages than it may; end the stream.
+    bool is_flooded() const { return is_flooded_; }
 
 private:
     struct Departure {
@@ -65,11 +65,14 @@ private:
         wire::WireFrame frame;
         std::size_t next_chunk = 0;
         wire::ServerTimes times;
+        std::map<wire::PlaneChoice, std::uint64_t> plane_bytes;
     };
 
     void handle(const v1::Configure& wanted);
     void handle(const v1::FrameAck& ack, TimePoint now);
     std::optional<Refusal> admit(const Configuration& wanted);
+    std::optional<std::string> subscribe(const Configuration& wanted);
+    bool is_too_much(const v1::ClientMessage& message, TimePoint now);
     void drop_old_configuration();
     bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
 
@@ -78,6 +81,8 @@ private:
     v1::ServerMessage heartbeat() const;
     void start_frame(TimePoint now);
     wire::WireFrame chunks_of(const feed::EncodedFrame& frame) const;
+    std::map<wire::PlaneChoice, std::uint64_t> plane_bytes_of(const feed::EncodedFrame& frame,
+                                                              const wire::WireFrame& chunks) const;
     bool has_key_frame_of(const feed::EncodedFrame& frame) const; ///< the client has, or this is it
     void set_key_frame(std::uint64_t frame_id);                   ///< that the client has; 0: none
     wire::WireChunk next_chunk(TimePoint now);
@@ -88,12 +93,18 @@ private:
     std::optional<Configuration> configuration_;
     std::uint32_t epoch_ = 0;
     Credits credits_;
+    Share bytes_;  ///< in flight
+    Share pixels_; ///< of the views that the server makes for it
+    RateLimit messages_;
+    bool is_flooded_ = false;
+    bool lacks_budget_ = false; ///< the frame in the mailbox has to wait for bytes of others
     Mailbox<feed::FramePtr> mailbox_;
     std::optional<Sending> sending_;
     std::uint64_t key_frame_id_ = 0; ///< that the client has; 0: none
     std::deque<v1::ServerMessage> answers_;
     std::optional<Departure> departure_; ///< GoingAway is to be sent
     std::optional<TimePoint> cut_at_;    ///< set when GoingAway was sent
+    std::optional<CloseReason> close_reason_;
     TimePoint next_heartbeat_;
     TimePoint configure_by_;
     TimePoint next_frame_due_{}; ///< by the client's rate cap

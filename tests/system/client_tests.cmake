@@ -21,9 +21,6 @@ fieldcast_test(client_access_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_access_test.cpp
     DEPENDS fieldcast_client_net)
 
-add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
-target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
-target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
 fieldcast_test(security_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/security_process_test.cpp
     DEPENDS certificate_authority test_program)

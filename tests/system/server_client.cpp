@@ -37,6 +37,15 @@ std::shared_ptr<grpc::Channel> connect(int port, const std::shared_ptr<grpc::Cha
     return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), credentials, arguments);
 }
 
+std::shared_ptr<grpc::Channel> connect_with_small_window(int port) {
+    grpc::ChannelArguments arguments;
+    arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+    arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 64 << 10);
+    return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials(),
+                                     arguments);
+}
+
 OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token)
     : stub_(v1::LightField::NewStub(channel)) {
     prepare(context_, token);
@@ -69,6 +78,14 @@ std::optional<v1::ServerMessage> OpenCall::read_until(v1::ServerMessage::Message
         message = read();
     }
     return message;
+}
+
+std::optional<v1::FrameChunk> OpenCall::read_frame() {
+    auto message = read_until(v1::ServerMessage::kFrameChunk);
+    while (message && !message->frame_chunk().has_trailer()) {
+        message = read_until(v1::ServerMessage::kFrameChunk);
+    }
+    return message ? std::optional(message->frame_chunk()) : std::nullopt;
 }
 
 grpc::Status OpenCall::finish() {

@@ -19,6 +19,10 @@ inline constexpr std::chrono::seconds kCallDeadline{20};
 std::shared_ptr<grpc::Channel>
 connect(int port, const std::shared_ptr<grpc::ChannelCredentials>& credentials = grpc::InsecureChannelCredentials());
 
+/// In plain text, and its transport takes in no more than 64 KiB that nobody has read: otherwise gRPC lets megabytes in
+/// over a fast connection.
+std::shared_ptr<grpc::Channel> connect_with_small_window(int port);
+
 /// A client of LightField.Open that shows every message.
 class OpenCall {
 public:
@@ -33,6 +37,9 @@ public:
 
     /// The next message of that kind; empty if the stream ends before.
     std::optional<v1::ServerMessage> read_until(v1::ServerMessage::MessageCase kind);
+
+    /// Reads to the end of the next frame: its trailer; empty if the stream ends before.
+    std::optional<v1::FrameChunk> read_frame();
 
     void half_close() { stream_->WritesDone(); }
     void cancel() { context_.TryCancel(); }

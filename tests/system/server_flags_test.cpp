@@ -7,6 +7,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <limits>
+#include <unistd.h>
 
 namespace fieldcast::ops {
 namespace {
@@ -111,6 +112,51 @@ TEST(Flags, RefusesToListenForTheWorld) {
     }
 }
 
+TEST(Flags, MetricsStayOnLoopbackToo) {
+    EXPECT_THAT(read({"--scene", kFile, "--metrics-listen", "0.0.0.0:9"}).problems,
+                Contains(HasSubstr("--metrics-listen 0.0.0.0:9")));
+    EXPECT_THAT(read({"--scene", kFile, "--metrics-listen", "127.0.0.1:0"}).problems,
+                Contains(HasSubstr("--metrics-port-file")));
+    const Invocation good = read({"--scene", kFile, "--metrics-listen", "127.0.0.1:9", "--log-format", "json"});
+    EXPECT_TRUE(good.problems.empty());
+    EXPECT_EQ(good.config.metrics_listen->port, 9);
+    EXPECT_EQ(good.config.log_format, log::Format::kJson);
+    EXPECT_THAT(read({"--scene", kFile, "--log-format", "xml"}).problems, Contains(HasSubstr("--log-format")));
+}
+
+TEST(Flags, ReadsAndChecksLimits) {
+    const Config config = read({"--scene", kFile, "--max-sessions-per-peer", "3", "--max-bytes-in-flight-in-total",
+                                "1000", "--max-opens-per-second-per-peer", "0.5"})
+                              .config;
+    EXPECT_EQ(config.limits.max_sessions_per_peer, 3U);
+    EXPECT_EQ(config.limits.max_bytes_in_flight_in_total, 1000U);
+    EXPECT_EQ(config.limits.max_opens_per_second_per_peer, 0.5);
+    const auto problems =
+        read({"--scene", kFile, "--max-scene-downloads", "0", "--max-messages-per-second", "1", "--max-pixels-per-peer",
+              "18446744073709551615", "--max-opens-per-second-per-peer", "nan"})
+            .problems;
+    for (const char* const flag : {"--max-scene-downloads 0", "--max-messages-per-second 1", "--max-pixels-per-peer 1844",
+                                   "--max-opens-per-second-per-peer nan"}) {
+        EXPECT_THAT(problems, Contains(HasSubstr(flag)));
+    }
+}
+
+TEST(Flags, ProbesOfHealthSendTokensEncryptedOnly) {
+    const Invocation probe = read({"--health", "https://example.org:5"});
+    EXPECT_EQ(probe.kind, Invocation::Kind::kHealth);
+    EXPECT_TRUE(probe.health.uses_tls);
+    EXPECT_EQ(probe.health.address.port, 5);
+    EXPECT_THAT(read({"--health", "nowhere"}).problems, Contains(HasSubstr("HOST:PORT")));
+    const std::string file = testing::TempDir() + "health_token_" + std::to_string(::getpid());
+    EXPECT_THAT(read({"--health", "localhost:5", "--health-token-file", file.c_str()}).problems,
+                Contains(HasSubstr("cannot be read")));
+    std::ofstream(file) << "fc_secret\n";
+    EXPECT_EQ(read({"--health", "localhost:5", "--health-token-file", file.c_str()}).health.token, "fc_secret");
+    EXPECT_THAT(read({"--health", "example.org:5", "--health-token-file", file.c_str()}).problems,
+                Contains(HasSubstr("unencrypted")));
+    std::filesystem::remove(file);
+}
+
 TEST(Flags, ReportsAccessFilesThatCannotBeUsed) {
     EXPECT_THAT(read({"--scene", kFile, "--tls-cert", kFile}).problems,
                 Contains(HasSubstr("--tls-cert needs --tls-key")));
@@ -172,7 +218,8 @@ TEST(Flags, HelpHasExamplesAndEveryGroup) {
     const Invocation help = read({"--help"});
     EXPECT_THAT(help.problems, IsEmpty());
     EXPECT_EQ(help.kind, Invocation::Kind::kPrint);
-    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:", "Security:"}) {
+    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:", "Limits:",
+                                   "Security:"}) {
         EXPECT_THAT(help.text, HasSubstr(part));
     }
 }

@@ -5,7 +5,8 @@ target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/s
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
 
 fieldcast_test(server_session_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
@@ -20,6 +21,12 @@ target_link_libraries(certificate_authority PRIVATE OpenSSL::Crypto GTest::gtest
 fieldcast_test(server_access_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_access_test.cpp
     DEPENDS certificate_authority fieldcast_server_access)
+add_library(http_client STATIC ${CMAKE_CURRENT_LIST_DIR}/http_client.cpp)
+target_include_directories(http_client PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(http_client PRIVATE OpenSSL::SSL OpenSSL::Crypto fieldcast_warnings)
+fieldcast_test(server_metrics_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_metrics_test.cpp
+    DEPENDS certificate_authority http_client fieldcast_server_metrics)
 fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
@@ -30,8 +37,16 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
     fieldcast_test(server_service_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
+    fieldcast_test(server_limits_test LABELS quick
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_hostile_test.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_limits_test.cpp
+        DEPENDS http_client server_synthetic fieldcast_server_service)
     fieldcast_test(server_security_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_security_test.cpp
@@ -46,3 +61,29 @@ fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
 target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
+
+# Processes: the programs beside the test.
+add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
+target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
+add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
+target_link_libraries(running_server PUBLIC test_program http_client fieldcast_proto_grpc PRIVATE GTest::gtest fieldcast_warnings)
+find_package(nlohmann_json REQUIRED)
+fieldcast_test(operation_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
+    DEPENDS certificate_authority running_server nlohmann_json::nlohmann_json)
+add_dependencies(operation_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(operation_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+
+# Through the proxy of deploy/; skips where it cannot be installed. See tests/deploy.
+if(NOT FIELDCAST_SANITIZE MATCHES thread)
+    add_executable(envoy_test ${CMAKE_CURRENT_LIST_DIR}/envoy_test.cpp ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
+                   ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
+    target_link_libraries(envoy_test PRIVATE certificate_authority http_client test_program server_synthetic
+                          fieldcast_server_service fieldcast_warnings GTest::gmock GTest::gtest_main)
+    add_dependencies(envoy_test fieldcast-client)
+    target_compile_definitions(envoy_test PRIVATE FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+    gtest_discover_tests(envoy_test WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+                         PROPERTIES LABELS system TIMEOUT 180 FIXTURES_REQUIRED envoy)
+endif()

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <gmock/gmock.h>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -21,8 +22,32 @@ std::string lines_of(const std::function<void()>& write) {
 }
 
 struct Log : testing::Test {
-    ~Log() override { set_level(Level::kInfo); }
+    ~Log() override {
+        set_level(Level::kInfo);
+        set_format(Format::kText);
+    }
 };
+
+TEST_F(Log, WritesOneJsonObjectPerLine) {
+    set_format(Format::kJson);
+    const std::string line = lines_of([] {
+        info("session opened", {{"peer", "a \"b\" \\ \n\x01\xFF"}, {"views", 36}, {"ms", 1.5}, {"cut", true}});
+    });
+    EXPECT_THAT(line, MatchesRegex("\\{\"time\":\"....-..-..T..:..:..\\....Z\",\"level\":\"info\",.*\n"));
+    EXPECT_THAT(line, EndsWith(R"(,"event":"session opened","peer":"a \"b\" \\ \u000a\u0001)"
+                               "\xEF\xBF\xBD"
+                               R"(","views":36,"ms":1.5,"cut":true})"
+                               "\n"));
+}
+
+TEST_F(Log, JsonHasNoNumbersThatAreNone) {
+    set_format(Format::kJson);
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(lines_of([&] {
+                    info("e", {{"a", infinity}, {"b", -infinity}, {"c", infinity - infinity}});
+                }),
+                MatchesRegex(".*\"a\":\"inf\",\"b\":\"-inf\",\"c\":\"-?nan\"\\}\n"));
+}
 
 TEST_F(Log, StartsWithTimeLevelAndEvent) {
     const std::string line = lines_of([] { info("session opened", {{"peer", "10.0.0.7"}, {"views", 36}}); });
@@ -37,7 +62,10 @@ TEST_F(Log, FormatsNumbersAndTruth) {
 }
 
 TEST_F(Log, QuotesValuesThatWouldBreakTheLine) {
-    EXPECT_THAT(lines_of([] { warn("peer", {{"name", "\x1b[2J"}}); }), MatchesRegex(".* warning +peer name=\" .2J\"\n"));
+    EXPECT_THAT(lines_of([] {
+                    warn("peer", {{"name", "\x1b[2J"}});
+                }),
+                MatchesRegex(".* warning +peer name=\" .2J\"\n"));
     const std::string line = lines_of([] { warn("refused", {{"name", "a b"}, {"why", "x=\"1\"\ny"}, {"empty", ""}}); });
     EXPECT_THAT(line, EndsWith(" refused name=\"a b\" why=\"x=\\\"1\\\" y\" empty=\"\"\n"));
 }

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/channel/frame_renderer.h"
+#include "server/metrics/registry.h"
+
+#include <chrono>
+#include <map>
+#include <string>
+
+namespace fieldcast::channel {
+
+/// What one channel counts. For one thread per function; `registry` must outlive it.
+class ChannelMetrics {
+public:
+    ChannelMetrics(metrics::Registry& registry, const std::string& channel);
+
+    void count_rendered(const RenderedFrame& frame, std::uint64_t invalid_samples); ///< samples: of this frame
+    void observe_encoding(std::chrono::duration<double> seconds);
+
+private:
+    void observe_stage(const StageTime& time);
+    metrics::Histogram& stage(const std::string& name);
+
+    metrics::Registry& registry_;
+    const std::string channel_;
+    metrics::Counter& frames_;
+    metrics::Counter& invalid_samples_;
+    metrics::Counter& view_pixels_;
+    std::map<std::string, metrics::Counter*> hole_pixels_; ///< by reason
+    metrics::Histogram& render_;
+    metrics::Histogram& encode_;
+    std::map<std::string, metrics::Histogram*> stages_; ///< seen so far, by name
+};
+
+} // namespace fieldcast::channel

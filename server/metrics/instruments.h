@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fieldcast::metrics {
+
+/// Only grows. Thread-safe, never waits.
+class Counter {
+public:
+    void add(std::uint64_t count = 1) { value_.fetch_add(count, std::memory_order_relaxed); }
+    std::uint64_t value() const { return value_.load(std::memory_order_relaxed); }
+
+private:
+    std::atomic<std::uint64_t> value_ = 0;
+};
+
+/// How often values fell below each of some bounds. Thread-safe, never waits; a reader may see a value counted and not
+/// yet summed up.
+class Histogram {
+public:
+    /// `bounds` ascend; above the last one there is no bound.
+    explicit Histogram(std::span<const double> bounds);
+
+    void observe(double value);
+
+    const std::vector<double>& bounds() const { return bounds_; }
+    /// Values at most bounds()[i], and after these all values: one more than there are bounds.
+    std::vector<std::uint64_t> cumulative_counts() const;
+    double sum() const { return sum_.load(std::memory_order_relaxed); }
+
+private:
+    std::vector<double> bounds_;
+    std::vector<std::atomic<std::uint64_t>> counts_; ///< one more than bounds
+    std::atomic<double> sum_ = 0.0;
+};
+
+/// From 0.1 ms to 10 s, about three per decade.
+std::span<const double> second_bounds();
+
+} // namespace fieldcast::metrics

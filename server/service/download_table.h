@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/metrics/registry.h"
+#include "server/service/scene_writer.h"
+
+#include <map>
+#include <string>
+#include <tl/expected.hpp>
+
+namespace fieldcast::service {
+
+/// All scene downloads under way, the limits on their number, and what became of them. Thread-safe.
+class DownloadTable {
+public:
+    /// `registry` must outlive it.
+    DownloadTable(const session::Limits& limits, metrics::Registry& registry);
+
+    /// A place for a download by `peer`: its id, or a message that names the limit.
+    tl::expected<std::uint64_t, std::string> admit(const std::string& peer);
+
+    /// `writer` takes the place `id`.
+    void add(std::uint64_t id, const std::shared_ptr<SceneWriter>& writer);
+    void remove(std::uint64_t id, DownloadEnd end, std::uint64_t bytes_sent);
+
+    /// Cuts those that do not read.
+    void tick(SceneWriter::Clock::time_point now);
+
+private:
+    struct Place {
+        std::string peer;
+        std::weak_ptr<SceneWriter> writer;
+    };
+    struct State {
+        std::map<std::uint64_t, Place> places;
+        std::uint64_t next_id = 1;
+    };
+
+    const session::Limits limits_;
+    metrics::Registry& registry_;
+    metrics::Counter& bytes_;
+    Guarded<State> state_;
+    metrics::Collector collector_; ///< last: reads the places
+};
+
+} // namespace fieldcast::service

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/service_metrics.h"
+
+#include "core/wire/convert.h"
+
+#include <cctype>
+
+namespace fieldcast::service {
+
+namespace {
+
+constexpr std::array kDenialNames{"no_token", "unknown_token", "role_too_low"};
+constexpr std::array kRefusalNames{"sessions", "sessions_per_peer", "opens", "draining"};
+
+/// "PLANE_SEMANTIC_DIFFUSE" without "PLANE_SEMANTIC_" -> "diffuse"
+std::string label_of(const std::string& enum_name, std::size_t prefix_size) {
+    std::string label = enum_name.substr(std::min(prefix_size, enum_name.size()));
+    for (char& c : label) {
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return label;
+}
+
+std::string label_of(PlaneSemantic semantic) {
+    return label_of(v1::PlaneSemantic_Name(wire::to_proto(semantic)), std::string_view("PLANE_SEMANTIC_").size());
+}
+
+std::string label_of(codec::CodecId codec) {
+    return label_of(v1::Codec_Name(wire::to_proto(codec)), std::string_view("CODEC_").size());
+}
+
+metrics::Counter& closed_counter(metrics::Registry& registry, session::CloseReason reason) {
+    return registry.counter({"fieldcast_sessions_closed_total", "Sessions that ended, by reason."},
+                            {{"reason", std::string(to_text(reason))}});
+}
+
+metrics::Counter& refused_counter(metrics::Registry& registry, const std::string& reason) {
+    return registry.counter(
+        {"fieldcast_sessions_refused_total", "Sessions that were not admitted, by what was exceeded."},
+        {{"reason", reason}});
+}
+
+metrics::Counter& denied_counter(metrics::Registry& registry, access::Denial::Kind kind) {
+    return registry.counter({"fieldcast_calls_denied_total", "Calls without a token that allows them, by reason."},
+                            {{"reason", kDenialNames.at(static_cast<std::size_t>(kind))}});
+}
+
+} // namespace
+
+ServiceMetrics::ServiceMetrics(metrics::Registry& registry)
+    : registry_(registry),
+      opened_(registry.counter({"fieldcast_sessions_opened_total", "Sessions that were admitted."}, {})) {
+    for (std::size_t i = 0; i < session::kCloseReasonCount; ++i) {
+        closed_counter(registry_, static_cast<session::CloseReason>(i));
+    }
+    for (const char* const reason : kRefusalNames) {
+        refused_counter(registry_, reason);
+    }
+    for (std::size_t i = 0; i < kDenialNames.size(); ++i) {
+        denied_counter(registry_, static_cast<access::Denial::Kind>(i));
+    }
+}
+
+void ServiceMetrics::count_denied(access::Denial::Kind kind) {
+    denied_counter(registry_, kind).add();
+}
+
+void ServiceMetrics::count_refused(const std::string& reason) {
+    refused_counter(registry_, reason).add();
+}
+
+void ServiceMetrics::count_closed(session::CloseReason reason) {
+    closed_counter(registry_, reason).add();
+}
+
+void ServiceMetrics::prepare(const std::string& channel) {
+    add(channel, {});
+}
+
+void ServiceMetrics::add(const std::string& channel, const session::SessionCounts& counts) {
+    const metrics::Labels of_channel{{"channel", channel}};
+    const auto add = [&](const char* name, const char* help, const metrics::Labels& labels, std::uint64_t count) {
+        registry_.counter({name, help}, labels).add(count);
+    };
+    add("fieldcast_frames_sent_total", "Frames that were sent completely.", of_channel, counts.frames_sent);
+    add("fieldcast_frames_failed_total", "Frames that a client could not decode.", of_channel, counts.frames_failed);
+    add("fieldcast_sent_bytes_total", "Bytes of frames, headers and aborted ones included.", of_channel,
+        counts.bytes_sent);
+    add("fieldcast_configurations_refused_total", "Configure messages that were refused.", of_channel, counts.refusals);
+    for (std::size_t i = 0; i < session::kDropReasonCount; ++i) {
+        add("fieldcast_frames_dropped_total", "Frames that a client did not get, by reason.",
+            {{"channel", channel}, {"reason", std::string(session::kDropReasonNames.at(i))}},
+            counts.drops.of(static_cast<session::DropReason>(i)));
+    }
+    for (const auto& [choice, bytes] : counts.plane_bytes) {
+        add("fieldcast_plane_bytes_total", "Payload of complete frames, by plane and codec.",
+            {{"channel", channel}, {"plane", label_of(choice.semantic)}, {"codec", label_of(choice.codec)}}, bytes);
+    }
+}
+
+} // namespace fieldcast::service

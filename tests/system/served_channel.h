@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/service/grpc_server.h"
+#include "server_client.h"
+#include "server_synthetic.h"
+
+#include <atomic>
+#include <gmock/gmock.h>
+#include <string>
+#include <thread>
+
+namespace fieldcast::test {
+
+/// A synthetic channel behind a gRPC server on loopback, and the server's metrics.
+class ServedChannel {
+public:
+    explicit ServedChannel(const session::Limits& limits);
+
+    int port() const { return server_.port(); }
+    service::GrpcServer& server() { return server_; }
+    std::string page() { return registry_->page().text(); }
+
+    /// The value of a series, labels included; -1 if it is not there.
+    double metric(const std::string& series);
+
+    /// Waits until the series has that value: sessions end a moment after their client has seen the end.
+    testing::AssertionResult shows(const std::string& series, double value);
+
+private:
+    SyntheticChannel channel_;
+    const std::shared_ptr<metrics::Registry> registry_ = std::make_shared<metrics::Registry>();
+    service::GrpcServer server_;
+};
+
+/// A client that behaves, in a thread of its own: reads, acknowledges, and half-closes at the end.
+class Bystander {
+public:
+    explicit Bystander(int port);
+    ~Bystander();
+    Bystander(const Bystander&) = delete;
+    Bystander& operator=(const Bystander&) = delete;
+
+    /// Waits until it has got some more frames.
+    testing::AssertionResult gets_more_frames();
+
+private:
+    void watch(const std::stop_token& stop);
+
+    const std::shared_ptr<grpc::Channel> connection_;
+    std::atomic<std::uint64_t> frames_ = 0;
+    std::jthread thread_;
+};
+
+} // namespace fieldcast::test

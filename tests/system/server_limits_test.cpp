@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits per peer and in total, over gRPC.
+#include "served_channel.h"
+
+#include <gtest/gtest.h>
+
+namespace fieldcast::test {
+namespace {
+
+using namespace std::chrono_literals;
+using grpc::StatusCode;
+using testing::HasSubstr;
+using Kind = v1::ServerMessage;
+
+/// A scene download that reads only when told to.
+class Download {
+public:
+    explicit Download(int port) : connection_(connect_with_small_window(port)), stub_(v1::Catalog::NewStub(connection_)) {
+        v1::FetchSceneRequest request;
+        const auto hash = synthetic_info().scene_hash;
+        request.set_scene_hash(hash.data(), hash.size());
+        context_.set_wait_for_ready(true);
+        context_.set_deadline(std::chrono::system_clock::now() + kCallDeadline);
+        reader_ = stub_->FetchScene(&context_, request);
+    }
+
+    bool read() {
+        v1::SceneChunk chunk;
+        const bool is_ok = reader_->Read(&chunk);
+        bytes_ += chunk.data().size();
+        return is_ok;
+    }
+
+    grpc::Status finish() {
+        while (read()) {
+        }
+        return reader_->Finish();
+    }
+
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    const std::shared_ptr<grpc::Channel> connection_;
+    const std::unique_ptr<v1::Catalog::Stub> stub_;
+    grpc::ClientContext context_;
+    std::unique_ptr<grpc::ClientReader<v1::SceneChunk>> reader_;
+    std::size_t bytes_ = 0;
+};
+
+TEST(ServiceLimits, APeerMayNotOpenSessionsTooFast) {
+    ServedChannel served({.max_sessions_per_peer = 3, .max_opens_per_second_per_peer = 0.1});
+    for (int i = 0; i < 3; ++i) {
+        OpenCall call(connect(served.port()));
+        call.half_close();
+        EXPECT_TRUE(call.finish().ok());
+        EXPECT_TRUE(served.shows("fieldcast_sessions_closed_total{reason=\"finished\"}", i + 1.0));
+    }
+    const grpc::Status status = OpenCall(connect(served.port())).finish();
+    EXPECT_EQ(status.error_code(), StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_THAT(status.error_message(), HasSubstr("too fast"));
+    EXPECT_TRUE(served.shows("fieldcast_sessions_refused_total{reason=\"opens\"}", 1));
+}
+
+TEST(ServiceLimits, AllPeersTogetherMayNotOpenSessionsTooFast) {
+    ServedChannel served({.max_sessions = 2, .max_sessions_per_peer = 3, .max_opens_per_second_per_peer = 0.01});
+    for (int i = 0; i < 2; ++i) {
+        OpenCall call(connect(served.port()));
+        call.half_close();
+        EXPECT_TRUE(call.finish().ok());
+        EXPECT_TRUE(served.shows("fieldcast_sessions_closed_total{reason=\"finished\"}", i + 1.0));
+    }
+    EXPECT_THAT(OpenCall(connect(served.port())).finish().error_message(), HasSubstr("all peers together"));
+    EXPECT_TRUE(served.shows("fieldcast_sessions_refused_total{reason=\"opens\"}", 1));
+}
+
+TEST(ServiceLimits, AllSessionsTogetherHaveABudgetOfBytes) {
+    ServedChannel served({.max_bytes_in_flight_in_total = 1});
+    OpenCall silent(connect(served.port()));
+    silent.configure();
+    ASSERT_TRUE(silent.read_frame().has_value()) << "one may go alone; it is not acknowledged";
+    OpenCall other(connect(served.port()));
+    other.configure();
+    ASSERT_TRUE(other.read_until(Kind::kConfigured).has_value());
+    int heartbeats = 0;
+    for (; heartbeats < 3; ++heartbeats) {
+        const auto message = other.read();
+        ASSERT_TRUE(message.has_value());
+        ASSERT_FALSE(message->has_frame_chunk()) << "there are no bytes left for it";
+    }
+    EXPECT_THAT(served.page(), HasSubstr("reason=\"no_budget\"} "));
+    EXPECT_GT(served.metric("fieldcast_frames_dropped_total{channel=\"synthetic\",reason=\"no_budget\"}"), 0.0);
+    silent.cancel();
+    EXPECT_FALSE(silent.finish().ok());
+    EXPECT_TRUE(other.read_until(Kind::kFrameChunk).has_value()) << "the bytes came back";
+    other.half_close();
+    EXPECT_TRUE(other.finish().ok());
+}
+
+TEST(ServiceLimits, PixelsOfOnePeerAreLimited) {
+    ServedChannel served({.max_pixels_per_peer = 5 * 64 * 36});
+    v1::Configure wanted;
+    wanted.mutable_grid()->set_rows(2);
+    wanted.mutable_grid()->set_cols(2);
+    OpenCall one(connect(served.port()));
+    one.configure(wanted);
+    ASSERT_TRUE(one.read_until(Kind::kConfigured).has_value());
+    OpenCall two(connect(served.port()));
+    two.configure(wanted);
+    const auto refused = two.read_until(Kind::kRefused);
+    ASSERT_TRUE(refused.has_value());
+    EXPECT_EQ(refused->refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
+    one.half_close();
+    EXPECT_TRUE(one.finish().ok());
+    EXPECT_TRUE(served.shows("fieldcast_sessions_closed_total{reason=\"finished\"}", 1));
+    two.configure(wanted);
+    EXPECT_TRUE(two.read_until(Kind::kConfigured).has_value());
+    two.half_close();
+    EXPECT_TRUE(two.finish().ok());
+}
+
+TEST(ServiceLimits, SceneDownloadsAreLimitedAndCounted) {
+    ServedChannel served({.max_scene_downloads_per_peer = 1});
+    Download first(served.port());
+    EXPECT_TRUE(first.read());
+    EXPECT_EQ(served.metric("fieldcast_scene_downloads"), 1.0);
+    Download second(served.port());
+    const grpc::Status refused = second.finish();
+    EXPECT_EQ(refused.error_code(), StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_THAT(refused.error_message(), HasSubstr("all 1 scene downloads"));
+    EXPECT_TRUE(first.finish().ok());
+    EXPECT_TRUE(served.shows("fieldcast_scene_downloads_total{result=\"finished\"}", 1));
+    EXPECT_EQ(served.metric("fieldcast_scene_downloads_total{result=\"refused\"}"), 1.0);
+    EXPECT_EQ(served.metric("fieldcast_scene_bytes_total"), static_cast<double>(first.bytes()));
+    EXPECT_TRUE(Download(served.port()).finish().ok()) << "there is room again";
+}
+
+TEST(ServiceLimits, ADownloadThatIsNotReadIsCut) {
+    ServedChannel served({.max_scene_downloads = 1, .stall_deadline = 300ms});
+    Bystander bystander(served.port());
+    Download silent(served.port());
+    EXPECT_TRUE(silent.read());
+    EXPECT_TRUE(served.shows("fieldcast_scene_downloads_total{result=\"stalled\"}", 1));
+    EXPECT_TRUE(served.shows("fieldcast_scene_downloads", 0));
+    EXPECT_FALSE(silent.finish().ok());
+    EXPECT_TRUE(Download(served.port()).finish().ok());
+    EXPECT_TRUE(bystander.gets_more_frames());
+}
+
+} // namespace
+} // namespace fieldcast::test

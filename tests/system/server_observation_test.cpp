@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the gRPC edge says about itself: counters, gauges, health.
+#include "server/service/grpc_server.h"
+#include "server/service/health_probe.h"
+#include "server_client.h"
+#include "server_synthetic.h"
+
+#include <gmock/gmock.h>
+#include <thread>
+
+namespace fieldcast::test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::Not;
+using Clock = std::chrono::steady_clock;
+using Kind = v1::ServerMessage;
+
+class Observation : public testing::Test {
+protected:
+    std::unique_ptr<service::GrpcServer> serve(const std::shared_ptr<feed::Feed>& channel,
+                                               const session::Limits& limits = {}) {
+        return std::make_unique<service::GrpcServer>(HostPort{.host = "127.0.0.1", .port = 0}, std::vector{channel},
+                                                     limits, access::Security{}, registry_);
+    }
+
+    std::string page() { return registry_->page().text(); }
+
+    /// Waits until the page shows `text`: sessions end a moment after their client has seen the end.
+    testing::AssertionResult shows(const std::string& text) {
+        const auto deadline = Clock::now() + 5s;
+        while (page().find(text) == std::string::npos) {
+            if (Clock::now() >= deadline) {
+                return testing::AssertionFailure() << text << " is not in\n" << page();
+            }
+            std::this_thread::sleep_for(10ms);
+        }
+        return testing::AssertionSuccess();
+    }
+
+    testing::AssertionResult lacks(const std::string& text) {
+        const auto deadline = Clock::now() + 5s;
+        while (page().find(text) != std::string::npos && Clock::now() < deadline) {
+            std::this_thread::sleep_for(10ms);
+        }
+        return page().find(text) == std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure();
+    }
+
+    static std::optional<std::string> health(const service::GrpcServer& server) {
+        return service::health_problem({.address = {.host = "127.0.0.1", .port = server.port()}});
+    }
+
+    const std::shared_ptr<metrics::Registry> registry_ = std::make_shared<metrics::Registry>();
+};
+
+TEST_F(Observation, CountsFramesBytesAndSessions) {
+    SyntheticChannel channel;
+    const auto server = serve(channel.feed());
+    EXPECT_THAT(page(), HasSubstr("fieldcast_frames_sent_total{channel=\"synthetic\"} 0\n"));
+    OpenCall call(connect(server->port()));
+    v1::Configure wanted;
+    wanted.mutable_grid()->set_rows(2);
+    wanted.mutable_grid()->set_cols(3);
+    call.configure(wanted);
+    std::uint64_t payload_bytes = 0;
+    for (int frames = 0; frames < 2;) { // two are what a client may have without acknowledging
+        const auto message = call.read_until(Kind::kFrameChunk);
+        ASSERT_TRUE(message.has_value());
+        payload_bytes += message->frame_chunk().payload().size();
+        frames += message->frame_chunk().has_trailer() ? 1 : 0;
+    }
+    EXPECT_TRUE(shows("fieldcast_frames_sent_total{channel=\"synthetic\"} 2\n"));
+    EXPECT_TRUE(shows("fieldcast_sessions{channel=\"synthetic\",mode=\"views\",grid=\"2x3\"} 1\n"));
+    EXPECT_TRUE(shows("fieldcast_frames_in_flight{channel=\"synthetic\"} 2\n"));
+    EXPECT_TRUE(shows("fieldcast_plane_bytes_total{channel=\"synthetic\",plane=\"colour\",codec=\"zstd_filtered\"} " +
+                      std::to_string(payload_bytes) + "\n"));
+    EXPECT_TRUE(lacks("fieldcast_frames_dropped_total{channel=\"synthetic\",reason=\"no_credit\"} 0\n"))
+        << "the channel goes on";
+    call.half_close();
+    EXPECT_TRUE(call.finish().ok());
+    EXPECT_TRUE(shows("fieldcast_sessions_closed_total{reason=\"finished\"} 1\n"));
+    EXPECT_THAT(page(), HasSubstr("fieldcast_sessions_opened_total 1\n"));
+    EXPECT_THAT(page(), HasSubstr("fieldcast_bytes_in_flight{channel=\"synthetic\"} 0\n"));
+    EXPECT_THAT(page(), Not(HasSubstr("fieldcast_sessions{")));
+}
+
+TEST_F(Observation, CountsPlanesOfModeScene) {
+    SyntheticChannel channel;
+    const auto server = serve(channel.feed());
+    OpenCall call(connect(server->port()));
+    v1::Configure wanted;
+    wanted.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
+    call.configure(wanted);
+    ASSERT_TRUE(call.read_frame().has_value());
+    for (const char* const plane : {"diffuse", "specular", "depth", "normal", "id", "material"}) {
+        EXPECT_TRUE(shows("plane=\"" + std::string(plane) + "\",codec=\"zstd_filtered\"} "));
+    }
+    EXPECT_TRUE(shows("mode=\"scene\""));
+    call.cancel();
+    EXPECT_FALSE(call.finish().ok());
+    EXPECT_TRUE(shows("fieldcast_sessions_closed_total{reason=\"cancelled\"} 1\n"));
+}
+
+TEST_F(Observation, CountsRefusalsByWhatWasExceeded) {
+    SyntheticChannel channel;
+    session::Limits limits;
+    limits.max_sessions = 1;
+    const auto server = serve(channel.feed(), limits);
+    OpenCall first(connect(server->port()));
+    v1::Configure too_large;
+    too_large.mutable_grid()->set_rows(73);
+    first.configure(too_large);
+    ASSERT_TRUE(first.read_until(Kind::kRefused).has_value());
+    EXPECT_TRUE(shows("fieldcast_configurations_refused_total{channel=\"\"} 1\n"));
+    EXPECT_TRUE(shows("fieldcast_sessions{channel=\"\",mode=\"\",grid=\"\"} 1\n"));
+    EXPECT_FALSE(OpenCall(connect(server->port())).finish().ok());
+    EXPECT_TRUE(shows("fieldcast_sessions_refused_total{reason=\"sessions\"} 1\n"));
+    server->begin_drain("a test");
+    EXPECT_FALSE(OpenCall(connect(server->port())).finish().ok());
+    EXPECT_TRUE(shows("fieldcast_sessions_refused_total{reason=\"draining\"} 1\n"));
+    first.half_close();
+    first.finish();
+    EXPECT_TRUE(shows("fieldcast_sessions_closed_total{reason=\"drained\"} 1\n"));
+}
+
+TEST_F(Observation, HealthSaysServingUntilItDrains) {
+    SyntheticChannel channel;
+    const auto server = serve(channel.feed());
+    EXPECT_EQ(health(*server), std::nullopt);
+    EXPECT_THAT(page(), HasSubstr("fieldcast_serving 1\n"));
+    server->begin_drain("a test");
+    EXPECT_EQ(health(*server), "NOT_SERVING");
+    EXPECT_THAT(page(), HasSubstr("fieldcast_serving 0\n"));
+}
+
+TEST_F(Observation, HealthFollowsAChannelThatHangs) {
+    const auto silent = std::make_shared<feed::Feed>(synthetic_info()); // nobody publishes, as if the device hung
+    session::Limits limits;
+    limits.channel_deadline = 300ms;
+    const auto server = serve(silent, limits);
+    EXPECT_EQ(health(*server), std::nullopt) << "nobody waits";
+    OpenCall call(connect(server->port()));
+    call.configure();
+    ASSERT_TRUE(call.read_until(Kind::kConfigured).has_value());
+    EXPECT_TRUE(shows("fieldcast_serving 0\n"));
+    EXPECT_EQ(health(*server), "NOT_SERVING");
+    call.half_close();
+    EXPECT_TRUE(call.finish().ok());
+    EXPECT_TRUE(shows("fieldcast_serving 1\n")) << "nobody waits any more";
+    EXPECT_EQ(health(*server), std::nullopt);
+}
+
+TEST(HealthProbe, SaysWhyThereIsNoAnswer) {
+    const auto problem = service::health_problem({.address = {.host = "127.0.0.1", .port = 1}, .timeout = 2s});
+    EXPECT_THAT(problem.value_or(""), HasSubstr("127.0.0.1:1: "));
+}
+
+} // namespace
+} // namespace fieldcast::test
