@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
 
+#include "core/codec/jpeg.h"
 #include "core/codec/zstd_body.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ bool is_complete(const Plane& plane) {
     return plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
 }
 
-bool fits(const Plane* reference, const Plane& plane) {
+bool is_alike(const Plane* reference, const Plane& plane) {
     return reference == nullptr || (reference->format == plane.format && reference->width_px == plane.width_px &&
                                     reference->height_px == plane.height_px && is_complete(*reference));
 }
@@ -63,7 +64,16 @@ void append_body(const Rows& rows, const StripOptions& options, StripHeader& hea
         header.coding = StripCoding::kRepeat;
         return;
     }
-    if (options.codec == CodecId::kZstdFiltered) {
+    if (options.encoding.codec == CodecId::kJpeg) {
+        header.coding = StripCoding::kJpeg;
+        const auto file =
+            encode_jpeg(rows.pixels, {rows.size.width_px, rows.size.row_count}, {.quality = options.encoding.quality});
+        if (file.size() < rows.pixels.size()) {
+            strip.insert(strip.end(), file.begin(), file.end());
+            return;
+        }
+    }
+    if (options.encoding.codec == CodecId::kZstdFiltered) {
         header.coding = StripCoding::kZstdFiltered;
         header.filter = options.filter.value_or(choose_filter(header.format, rows));
         const bool is_temporal = header.filter.predictor == Predictor::kReference;
@@ -84,6 +94,8 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
     case StripCoding::kZstdFiltered:
         return decode_zstd(header.filter, rows.size, body, is_temporal ? rows.reference : std::span<const std::byte>(),
                            pixels);
+    case StripCoding::kJpeg:
+        return decode_jpeg(body, {rows.size.width_px, rows.size.row_count}, pixels);
     case StripCoding::kRepeat:
         if (!body.empty()) {
             return decode_error("strip: a repetition has no bytes");
@@ -103,15 +115,6 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
 
 } // namespace
 
-std::optional<CodecId> codec_from_number(std::uint64_t number) {
-    switch (static_cast<CodecId>(number)) {
-    case CodecId::kRaw:
-    case CodecId::kZstdFiltered:
-        return number <= 0xFF ? std::optional(static_cast<CodecId>(number)) : std::nullopt;
-    }
-    return std::nullopt;
-}
-
 std::vector<RowBand> strip_bands(std::uint32_t height_px) {
     std::vector<RowBand> bands;
     for (std::uint32_t row = 0; row < height_px; row += kStripRows) {
@@ -128,7 +131,8 @@ std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const Stri
     FC_ASSERT(is_inside(band, plane), "rows outside the plane");
     FC_ASSERT(is_complete(plane), "plane size");
     FC_ASSERT(plane.width_px <= kMaxPlaneSide && plane.height_px <= kMaxPlaneSide, "plane too large for the wire");
-    FC_ASSERT(fits(options.reference, plane), "reference of another size or format");
+    FC_ASSERT(is_alike(options.reference, plane), "reference of another size or format");
+    FC_ASSERT(fits(options.encoding.codec, plane.format), "codec does not fit the format");
     Rows rows{band_size(plane, band), rows_of(plane.bytes, plane, band), {}};
     if (options.reference != nullptr) {
         rows.reference = rows_of(options.reference->bytes, plane, band);
@@ -147,8 +151,9 @@ bool needs_reference(std::span<const std::byte> strip) {
     return header->needs_reference();
 }
 
-Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Plane* reference, Plane& plane) {
-    FC_ASSERT(is_complete(plane) && fits(reference, plane), "plane size");
+Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Announced& announced, Plane& plane) {
+    const Plane* const reference = announced.reference;
+    FC_ASSERT(is_complete(plane) && is_alike(reference, plane), "plane size");
     if (!is_inside(band, plane)) {
         return decode_error("strip: rows outside the plane");
     }
@@ -158,6 +163,10 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
     }
     if (header->format != plane.format || header->width_px != plane.width_px || header->band != band) {
         return decode_error("strip header: format, width or rows differ from what was announced");
+    }
+    if (header->coding == StripCoding::kJpeg &&
+        (announced.codec != CodecId::kJpeg || !fits(CodecId::kJpeg, plane.format))) {
+        return decode_error("strip: JPEG in a plane of another codec");
     }
     if (header->needs_reference() && reference == nullptr) {
         return decode_error("strip: refers to another frame, its frame does not");

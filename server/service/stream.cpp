@@ -204,7 +204,8 @@ void Stream::log_closed(const session::SessionCounts& counts) const {
                                  {"dropped_no_credit", drops(DropReason::kNoCredit)},
                                  {"dropped_rate_cap", drops(DropReason::kRateCap)},
                                  {"dropped_reconfigured", drops(DropReason::kReconfigured)},
-                                 {"dropped_leaving", drops(DropReason::kLeaving)}});
+                                 {"dropped_leaving", drops(DropReason::kLeaving)},
+                                 {"dropped_no_key_frame", drops(DropReason::kNoKeyFrame)}});
 }
 
 } // namespace fieldcast::service

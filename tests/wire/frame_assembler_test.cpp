@@ -132,7 +132,7 @@ TEST_F(FrameAssemblerTest, DamagedPayloadFailsAndTheNextFrameIsFine) {
 }
 
 TEST_F(FrameAssemblerTest, RawDamageIsCaughtByTheCrc) {
-    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, codec::CodecId::kRaw}};
+    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {codec::CodecId::kRaw}}};
     const EncodedSource source = encode_source(test_source(1), choices, {}, pool_);
     auto chunks = all_chunks(source_chunks(source, choices, {.epoch = 3}));
     chunks[1].mutable_payload()->back() ^= 1;
