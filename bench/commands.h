@@ -20,7 +20,19 @@ void add_holes_command(CLI::App& app);
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 
-/// The references of `quality`.
+/// Quality and cost of grids of different sizes (the paper's figure 4).
+void add_grids_command(CLI::App& app);
+
+/// The report of `quality` from what it wrote into a folder.
+void add_report_command(CLI::App& app);
+
+/// The metrics of `quality` for two image files.
+void add_compare_command(CLI::App& app);
+
+/// Quality and cost of source configurations (the paper's figure 5).
+void add_sources_command(CLI::App& app);
+
+/// The references of `quality` and `grids`.
 void add_reference_command(CLI::App& app);
 
 } // namespace fieldcast::bench

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench frame`: where the time of one frame goes, stage by stage (the paper's figure 3).
 #include "bench/commands.h"
+#include "bench/frame_page.h"
+#include "bench/interrupt.h"
 #include "bench/light_field_run.h"
+#include "bench/progress.h"
+#include "bench/provenance.h"
 #include "core/base/error.h"
 #include "core/image/image_file.h"
 
@@ -16,13 +20,14 @@ namespace fieldcast::bench {
 namespace {
 
 struct FrameOptions {
-    std::string scene = "scenes/atelier/atelier.gltf";
+    std::string scene = "atelier";
     std::string environment;
     std::string grid = "6x6";
     std::string size = "1280x720";
     std::string device;
     std::string traversal = "auto";
     std::string json;
+    std::string html;
     std::string out;
     std::uint32_t frames = 8;
     std::uint32_t warm_up = 2;
@@ -102,9 +107,9 @@ nlohmann::ordered_json summarise(const gpu::Device& device, const FrameOptions& 
         return median(values);
     };
     const auto ns_per = [](double ms, double paths) { return paths > 0.0 ? ms * 1e6 / paths : 0.0; };
-    nlohmann::ordered_json json;
-    json["device"] = device.info().name + ", " + device.info().driver;
-    json["scene"] = options.scene;
+    nlohmann::ordered_json json = provenance(device);
+    json["scene"] = find_benchmark_scene(options.scene).title;
+    json["frames"] = samples.size();
     json["grid"] = options.grid;
     json["size"] = options.size;
     for (const StageTime& time : samples.front().stages) {
@@ -139,37 +144,55 @@ void print_table(const nlohmann::ordered_json& json) {
               << "peak memory: " << json["peak_rss_bytes"].get<double>() / 1048576.0 << " MiB\n";
 }
 
-void run_frame(const FrameOptions& options) {
-    const gpu::Device device({.name_contains = options.device});
-    LightFieldScene scene(device, {options.scene, options.environment, options.grid, options.spacing_m,
-                                   options.traversal, parse_size("--size", options.size)});
-    RenderSettings settings = options.settings;
-    settings.holes = parse_holes(options.holes, scene.grid());
-    settings.exposure = static_cast<float>(options.exposure);
-    LightFieldRun run(device, scene, settings, options.guard_band);
-    Views views;
-    std::cout << device.info().name << ", " << device.info().driver << '\n'
-              << options.scene << ", " << options.grid << " views of " << options.size << '\n';
-    const GuardBandChoice& guard = run.guard_band();
+void print_guard_band(const GuardBandChoice& guard) {
     std::cout << "guard band: left " << guard.band.left_px << ", right " << guard.band.right_px << ", top "
-              << guard.band.top_px << ", bottom " << guard.band.bottom_px << " pixels (" << std::llround(100.0 * guard.extra_share) << " % more source pixels, "
-              << std::llround(100.0 * guard.removed_share) << " % of the out-of-frustum pixels removed)\n";
+              << guard.band.top_px << ", bottom " << guard.band.bottom_px << " pixels ("
+              << std::llround(100.0 * guard.extra_share) << " % more source pixels, "
+              << std::llround(100.0 * guard.removed_share) << " % of the out-of-frustum pixels removed)" << std::endl;
+}
+
+/// The frames after warm-up; `views` become those of the last one. Throws Interrupted.
+std::vector<FrameSample> measure_frames(LightFieldScene& scene, LightFieldRun& run, const FrameOptions& options,
+                                        Views& views) {
     std::vector<FrameSample> samples;
+    const InterruptGuard interrupt;
+    Progress progress("frames", options.warm_up + options.frames);
     for (std::uint32_t frame = 0; frame < options.warm_up + options.frames; ++frame) {
         const FrameSample sample = measure(scene, run, frame, views);
         if (frame >= options.warm_up) {
             samples.push_back(sample);
         }
-        std::cerr << "\rframe " << frame + 1 << " of " << options.warm_up + options.frames << std::flush;
+        progress.add(1.0);
+        if (interrupt.is_interrupted()) {
+            throw Interrupted{"no results were written"};
+        }
     }
-    std::cerr << '\n';
-    const nlohmann::ordered_json json = summarise(device, options, samples);
+    return samples;
+}
+
+void run_frame(const FrameOptions& options) {
+    const gpu::Device device({.name_contains = options.device});
+    const BenchmarkScene known = find_benchmark_scene(options.scene);
+    LightFieldScene scene(device, {known.file, options.environment, options.grid, options.spacing_m, options.traversal,
+                                   parse_size("--size", options.size)});
+    RenderSettings settings = options.settings;
+    settings.holes = parse_holes(options.holes, scene.grid());
+    settings.exposure = options.exposure > 0.0 ? static_cast<float>(options.exposure) : known.exposure;
+    LightFieldRun run(device, scene, settings, options.guard_band);
+    std::cout << device.info().name << ", " << device.info().driver << '\n'
+              << known.title << ", " << options.grid << " views of " << options.size << '\n';
+    print_guard_band(run.guard_band());
+    Views views;
+    const nlohmann::ordered_json json = summarise(device, options, measure_frames(scene, run, options, views));
     print_table(json);
     if (run.invalid_samples() > 0) {
         std::cout << "invalid samples: " << run.invalid_samples() << '\n';
     }
     if (!options.json.empty()) {
         write_json(options.json, json);
+    }
+    if (!options.html.empty()) {
+        frame_page(json).write(options.html);
     }
     if (!options.out.empty()) {
         write_views(options.out, scene.grid(), views);
@@ -181,24 +204,30 @@ void run_frame(const FrameOptions& options) {
 void add_frame_command(CLI::App& app) {
     auto options = std::make_shared<FrameOptions>();
     CLI::App* command = app.add_subcommand("frame", "Stage times of one frame; medians over frames after warm-up");
-    command->add_option("--scene", options->scene, "glTF file")->capture_default_str();
+    command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
     command->add_option("--environment", options->environment, ".hdr or .exr environment");
     command->add_option("--grid", options->grid, "ROWSxCOLUMNS of views")->capture_default_str();
     command->add_option("--size", options->size, "size of source and views")->capture_default_str();
     command->add_option("--spacing", options->spacing_m, "metres between views (default: the camera's, else 0.03)");
-    command->add_option("--exposure", options->exposure, "default: automatic");
-    command->add_option("--frames", options->frames, "frames measured")->check(CLI::Range(1, 100000))->capture_default_str();
+    command->add_option("--exposure", options->exposure, "default: the named scene's; automatic for a file");
+    command->add_option("--frames", options->frames, "frames measured")
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
     command->add_option("--warm-up", options->warm_up, "frames before them")->capture_default_str();
-    command->add_option("--spp", options->settings.samples_per_pixel)->check(CLI::Range(1, 4096))->capture_default_str();
+    command->add_option("--spp", options->settings.samples_per_pixel)
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
     command->add_option("--bounces", options->settings.max_bounces)->check(CLI::Range(1, 64))->capture_default_str();
     command->add_flag("!--no-nee", options->settings.next_event_estimation, "without next event estimation");
     command->add_flag("!--no-guard-band", options->guard_band, "source without guard band, as in the paper");
-    command->add_option("--holes", options->holes,
-                        "all, none (path traced), or a list of previous,isolated,cascade,source,denoise")
+    command
+        ->add_option("--holes", options->holes,
+                     "all, none (path traced), or a list of previous,isolated,cascade,source,denoise")
         ->capture_default_str();
     command->add_option("--device", options->device, "part of the Vulkan device's name");
     command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
     command->add_option("--json", options->json, "write the results to this file");
+    command->add_option("--html", options->html, "write a report with charts to this file");
     command->add_option("--out", options->out, "write the last frame's views to this folder");
     command->callback([options] { run_frame(*options); });
 }

@@ -13,7 +13,7 @@ namespace fieldcast::bench {
 namespace {
 
 struct HoleOptions {
-    std::string scene = "scenes/atelier/atelier.gltf";
+    std::string scene = "atelier";
     std::string grid = "6x6";
     std::string size = "640x360";
     std::string device;
@@ -64,7 +64,7 @@ double display(float linear, float exposure) { // clamp and sRGB curve
 class HoleRun {
 public:
     HoleRun(const gpu::Device& device, const HoleOptions& options)
-        : scene_(device, {.file = options.scene, .grid = options.grid, .size = parse_size("--size", options.size)}),
+        : scene_(device, {.file = find_benchmark_scene(options.scene).file, .grid = options.grid, .size = parse_size("--size", options.size)}),
           source_(device, scene_.gpu_scene()), planes_(device), reference_(device, scene_.gpu_scene()),
           variants_(make_variants(scene_.grid())) {
         for (Variant& variant : variants_) {
@@ -202,7 +202,7 @@ void run_holes(const HoleOptions& options) {
 void add_holes_command(CLI::App& app) {
     auto options = std::make_shared<HoleOptions>();
     CLI::App* command = app.add_subcommand("holes", "What each stage of hole filling saves, and the error it leaves");
-    command->add_option("--scene", options->scene, "glTF file")->capture_default_str();
+    command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
     command->add_option("--grid", options->grid, "ROWSxCOLUMNS of views")->capture_default_str();
     command->add_option("--size", options->size, "size of source and views")->capture_default_str();
     command->add_option("--frames", options->frames, "frames rendered; the last two are measured")

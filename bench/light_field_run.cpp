@@ -39,7 +39,16 @@ LightFieldScene::LightFieldScene(const gpu::Device& device, const Options& optio
 }
 
 void LightFieldScene::pose(std::uint32_t frame) {
-    gpu_scene_.pose(static_cast<std::int64_t>(frame) * 1'000'000'000 / kFramesPerSecond, frame == 0);
+    gpu_scene_.pose(time_of_frame_ns(frame), frame == 0);
+}
+
+std::int64_t LightFieldScene::time_of_frame_ns(std::uint32_t frame) {
+    return static_cast<std::int64_t>(frame) * 1'000'000'000 / kFramesPerSecond;
+}
+
+void LightFieldScene::choose_grid(std::uint32_t rows, std::uint32_t cols) {
+    grid_.rows = rows;
+    grid_.cols = cols;
 }
 
 Camera LightFieldScene::source() const {
@@ -56,14 +65,17 @@ render::ViewRequest LightFieldScene::request(std::vector<LatticePosition> positi
 }
 
 LightFieldRun::LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
-                             bool has_guard_band)
+                             bool has_guard_band, std::vector<LatticePosition> source_positions)
     : scene_(scene), source_renderer_(device, scene.gpu_scene()), grid_renderer_(device, scene.gpu_scene()) {
     scene_.pose(0);
     header_.cut = true;
     header_.settings = settings;
     header_.source = scene_.source();
+    header_.source_positions = std::move(source_positions);
+    header_.source_geometry = scene_.grid().geometry;
     if (has_guard_band) {
-        guard_band_ = render::measure_guard_band(device, scene_.gpu_scene(), header_.source, scene_.grid());
+        guard_band_ = render::measure_guard_band(device, scene_.gpu_scene(), header_.source, scene_.grid(),
+                                                 header_.source_positions);
         header_.guard_band = guard_band_.band;
     }
     if (settings.exposure <= 0.0F) {
@@ -75,17 +87,27 @@ LightFieldRun::LightFieldRun(const gpu::Device& device, LightFieldScene& scene, 
 Views LightFieldRun::render(std::uint32_t frame, const std::vector<LatticePosition>& positions) {
     header_.frame_id = frame;
     header_.noise_frame = frame;
-    header_.scene_time_ns = static_cast<std::int64_t>(frame) * 1'000'000'000 / kFramesPerSecond;
+    header_.scene_time_ns = scene_.gpu_scene().current_pose().time_ns;
     header_.cut = frame == 0;
     header_.source = scene_.source();
     source_ = &source_renderer_.render(header_);
     return grid_renderer_.render(*source_, scene_.request(positions));
 }
 
+float choose_exposure(const gpu::Device& device, LightFieldScene& scene, float wanted, const BenchmarkScene& known) {
+    if (wanted > 0.0F || known.exposure > 0.0F) {
+        return wanted > 0.0F ? wanted : known.exposure;
+    }
+    RenderSettings automatic;
+    automatic.exposure = 0.0F;
+    return LightFieldRun(device, scene, automatic, false).header().settings.exposure;
+}
+
 HoleFilling parse_holes(const std::string& text, const ViewGrid& grid) {
     const auto holes = parse_hole_filling(text, grid.rows, grid.cols);
     if (!holes) {
-        throw UserError("--holes " + text + ": expected all, none or a list of previous,isolated,cascade,source,denoise");
+        throw UserError("--holes " + text +
+                        ": expected all, none or a list of previous,isolated,cascade,source,denoise");
     }
     return *holes;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/benchmark_scene.h"
 #include "bench/measure.h"
 #include "core/render/setup.h"
 #include "core/render/source_renderer.h"
@@ -29,6 +30,10 @@ public:
 
     /// Places everything as it is in frame `frame` of 30 per second; frame 0 is a cut.
     void pose(std::uint32_t frame);
+    static std::int64_t time_of_frame_ns(std::uint32_t frame);
+
+    /// From now on `grid()` has so many views, of the same lattice.
+    void choose_grid(std::uint32_t rows, std::uint32_t cols);
 
     Camera source() const; ///< in the current pose
     Camera view(LatticePosition position) const;
@@ -37,6 +42,7 @@ public:
     const Size& size() const { return size_; }
     const scene::Scene& scene() const { return scene_; }
     scene::GpuScene& gpu_scene() { return gpu_scene_; }
+    const scene::GpuScene& gpu_scene() const { return gpu_scene_; }
 
 private:
     Size size_;
@@ -50,10 +56,10 @@ private:
 class LightFieldRun {
 public:
     /// `settings.exposure` 0: automatic, from the first frame. Renders that frame if so or if `has_guard_band`.
-    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
-                  bool has_guard_band);
+    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings, bool has_guard_band,
+                  std::vector<LatticePosition> source_positions = middle_source());
 
-    /// The scene must be posed for `frame`. Stage times are in the result's header.
+    /// Frame number `frame` of the sequence, with the scene as it is posed now. Stage times are in the result's header.
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);
 
     const render::SourcePlanes& source() const { return *source_; } ///< of the last render()
@@ -72,6 +78,9 @@ private:
     GuardBandChoice guard_band_;
     const render::SourcePlanes* source_ = nullptr;
 };
+
+/// `wanted` if it is given (> 0), else that of the benchmark scene, else automatic: renders the first frame.
+float choose_exposure(const gpu::Device& device, LightFieldScene& scene, float wanted, const BenchmarkScene& known);
 
 /// `--holes` of a benchmark. Throws UserError.
 HoleFilling parse_holes(const std::string& text, const ViewGrid& grid);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fieldcast-bench: one subcommand per benchmark.
 #include "bench/commands.h"
+#include "bench/interrupt.h"
 #include "core/base/error.h"
 
 #include <iostream>
@@ -17,7 +18,14 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_frame_command(app);
     fieldcast::bench::add_holes_command(app);
     fieldcast::bench::add_quality_command(app);
+    fieldcast::bench::add_grids_command(app);
+    fieldcast::bench::add_sources_command(app);
     fieldcast::bench::add_reference_command(app);
+    fieldcast::bench::add_report_command(app);
+    fieldcast::bench::add_compare_command(app);
+    app.footer(
+        "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/benchmarks.md says\n"
+        "what all the numbers mean.");
     CLI11_PARSE(app, argc, argv);
     return 0;
 }
@@ -27,6 +35,9 @@ int start(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         return start(argc, argv);
+    } catch (const fieldcast::bench::Interrupted& interrupted) {
+        std::cerr << "\ninterrupted: " << interrupted.what_is_left << '\n';
+        return fieldcast::bench::kInterrupted;
     } catch (const fieldcast::UserError& error) {
         std::cerr << "fieldcast-bench: " << error.what() << '\n';
         return kUserError;

@@ -2,13 +2,19 @@
 #include "bench/measure.h"
 
 #include "core/base/error.h"
+#include "core/image/atomic_file.h"
 
 #include <algorithm>
-#include <fstream>
+#include <span>
 #include <sstream>
 #include <sys/resource.h>
+#include <system_error>
 
 namespace fieldcast::bench {
+
+std::string to_string(const Size& size) {
+    return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
+}
 
 Size parse_size(const std::string& flag, const std::string& text) {
     Size size;
@@ -28,10 +34,11 @@ double median(std::vector<double> values) {
 }
 
 void write_json(const std::string& file, const nlohmann::ordered_json& json) {
-    std::ofstream out(file);
-    out << json.dump(2) << '\n';
-    if (!out.flush()) {
-        throw UserError(file + ": cannot be written");
+    const std::string text = json.dump(2) + '\n';
+    try {
+        image::write_file_atomically(file, std::as_bytes(std::span(text)));
+    } catch (const std::system_error& error) {
+        throw UserError(file + ": cannot be written: " + error.code().message());
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include "core/base/error.h"
 
+#include <algorithm>
+
 namespace fieldcast::bench {
 
 namespace {
@@ -17,6 +19,20 @@ std::vector<LatticePosition> positions_of(const std::vector<std::pair<std::uint3
 }
 
 } // namespace
+
+bool Protocol::is_scored(std::uint32_t frame) const {
+    return std::ranges::find(frames, frame) != frames.end();
+}
+
+std::vector<PictureId> Protocol::pictures() const {
+    std::vector<PictureId> pictures;
+    for (const std::uint32_t frame : frames) {
+        for (const LatticePosition view : views) {
+            pictures.push_back({frame, view});
+        }
+    }
+    return pictures;
+}
 
 Protocol find_protocol(const std::string& name) {
     if (name == "reduced") {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/measure.h"
-#include "core/lightfield/view_grid.h"
+#include "bench/picture_id.h"
 
 #include <string>
 #include <vector>
@@ -16,6 +16,9 @@ struct Protocol {
     std::vector<std::uint32_t> frames;
     std::vector<LatticePosition> views;
     std::uint32_t reference_samples = 0;
+
+    bool is_scored(std::uint32_t frame) const;
+    std::vector<PictureId> pictures() const; ///< frame by frame
 };
 
 /// "reduced" (for two processor cores) or "full" (for a GPU). Throws UserError.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/references.h"
 
+#include "bench/interrupt.h"
+#include "bench/progress.h"
 #include "core/base/error.h"
 
 #include <chrono>
@@ -13,6 +15,12 @@ namespace {
 constexpr std::uint32_t kBatch = 16; // samples between looks at the clock
 constexpr std::uint32_t kSeed = 0x5EED;
 constexpr std::chrono::seconds kSaveInterval{30};
+
+/// Other noise in each picture: equal noise would neither average out in refocused images nor show as change over time.
+std::uint32_t seed_of(std::uint32_t frame, LatticePosition position) {
+    const ViewIndex index = view_index(position);
+    return kSeed + 4096U * frame + static_cast<std::uint32_t>(64 * index.row + index.col);
+}
 
 std::string hex(const scene::SceneHash& hash) {
     constexpr const char* kDigits = "0123456789abcdef";
@@ -55,7 +63,8 @@ std::uint32_t References::samples_of(std::uint32_t frame, LatticePosition positi
     const auto json = nlohmann::ordered_json::parse(stream, nullptr, false);
     const bool is_ours = json.is_object() && json.contains("of") && json["of"] == description() &&
                          json.contains("samples_per_pixel") && json["samples_per_pixel"].is_number_unsigned();
-    return is_ours && std::filesystem::exists(file_of(frame, position)) ? json["samples_per_pixel"].get<std::uint32_t>() : 0;
+    return is_ours && std::filesystem::exists(file_of(frame, position)) ? json["samples_per_pixel"].get<std::uint32_t>()
+                                                                        : 0;
 }
 
 void References::save(const std::filesystem::path& file, const Camera& camera) const {
@@ -83,7 +92,7 @@ std::optional<image::RgbF32> References::get(std::uint32_t frame, LatticePositio
     }
     auto saved = std::chrono::steady_clock::now();
     while (renderer_.samples_per_pixel() < samples) {
-        renderer_.accumulate(unbiased(), kSeed);
+        renderer_.accumulate(unbiased(), seed_of(frame, position));
         const auto now = std::chrono::steady_clock::now();
         const bool goes_on = progress(renderer_.samples_per_pixel());
         if (!goes_on || now - saved > kSaveInterval || renderer_.samples_per_pixel() >= samples) {
@@ -99,6 +108,36 @@ std::optional<image::RgbF32> References::get(std::uint32_t frame, LatticePositio
                                  " invalid samples");
     }
     return image::RgbF32{camera.width_px, camera.height_px, renderer_.image()};
+}
+
+void make_references(LightFieldScene& scene, References& references, const std::vector<PictureId>& wanted,
+                     std::uint32_t samples) {
+    double missing = 0.0;
+    for (const PictureId& picture : wanted) {
+        const std::uint32_t lacking =
+            samples - std::min(references.samples_of(picture.frame, picture.position), samples);
+        missing += (lacking + kBatch - 1) / kBatch * kBatch;
+    }
+    if (missing == 0.0) {
+        return;
+    }
+    Progress progress("references", missing);
+    const InterruptGuard guard;
+    for (const PictureId& picture : wanted) {
+        std::uint32_t before = references.samples_of(picture.frame, picture.position);
+        if (before >= samples) {
+            continue;
+        }
+        scene.pose(picture.frame);
+        const auto report = [&](std::uint32_t done) {
+            progress.add(done - before);
+            before = done;
+            return !guard.is_interrupted();
+        };
+        if (!references.get(picture.frame, picture.position, samples, report)) {
+            throw Interrupted{"the references made so far are kept, the same command goes on from there"};
+        }
+    }
 }
 
 } // namespace fieldcast::bench

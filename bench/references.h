@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/light_field_run.h"
+#include "bench/picture_id.h"
 #include "core/image/image_file.h"
 #include "core/render/reference_renderer.h"
 
@@ -36,5 +37,10 @@ private:
     std::filesystem::path folder_;
     render::ReferenceRenderer renderer_;
 };
+
+/// Makes the references of `wanted` that are missing and says how far it is. Poses the scene. Throws Interrupted after
+/// Ctrl-C, when what was made so far is saved.
+void make_references(LightFieldScene& scene, References& references, const std::vector<PictureId>& wanted,
+                     std::uint32_t samples);
 
 } // namespace fieldcast::bench

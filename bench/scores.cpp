@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/scores.h"
 
+#include "core/base/error.h"
 #include "core/image/metrics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace fieldcast::bench {
 
@@ -13,49 +13,75 @@ namespace {
 
 constexpr std::uint32_t kBorder = 32;
 
-double mean(const std::vector<double>& values) {
-    return values.empty() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+image::RgbF32 exposed(image::RgbF32 image, float exposure) {
+    for (glm::vec3& pixel : image.pixels) {
+        pixel *= exposure;
+    }
+    return image;
 }
 
 } // namespace
 
-double Scores::Part::rmse() const {
-    return pixels > 0.0 ? std::sqrt(squared / (3.0 * pixels)) : 0.0;
+Spread spread_of(const std::vector<double>& values) {
+    FC_ASSERT(!values.empty(), "there are values");
+    const auto count = static_cast<double>(values.size());
+    Spread spread;
+    spread.min = *std::ranges::min_element(values);
+    spread.max = *std::ranges::max_element(values);
+    for (const double value : values) {
+        spread.mean += value / count;
+    }
+    double variance = 0.0;
+    for (const double value : values) {
+        variance += (value - spread.mean) * (value - spread.mean) / count;
+    }
+    spread.deviation = std::sqrt(variance);
+    return spread;
 }
 
-void Scores::add(const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
-                 const std::vector<bool>& hole_mask) {
+nlohmann::ordered_json Scores::Part::rmse() const {
+    return pixels > 0.0 ? nlohmann::ordered_json(std::sqrt(squared / (3.0 * pixels))) : nlohmann::ordered_json();
+}
+
+void Scores::add(const PictureId& id, const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
+                 const PictureMasks& masks) {
     const image::RgbF32 shown = image::display_image(linear, exposure);
     const image::RgbF32 expected = image::display_image(reference, exposure);
-    rmse_.push_back(image::rmse(shown, expected));
-    ssim_.push_back(image::ssim(shown, expected));
-    image::RgbF32 exposed = linear; // relative errors need a scale for their 0.01
-    image::RgbF32 exposed_reference = reference;
-    for (std::size_t i = 0; i < exposed.pixels.size(); ++i) {
-        exposed.pixels[i] *= exposure;
-        exposed_reference.pixels[i] *= exposure;
-    }
-    relative_mse_.push_back(image::relative_mse(exposed, exposed_reference));
+    // Relative errors need a scale for their 0.01: that of the exposure.
+    pictures_.push_back({id, image::rmse(shown, expected), image::ssim(shown, expected),
+                         image::relative_mse(exposed(linear, exposure), exposed(reference, exposure))});
     for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
         const glm::dvec3 difference = glm::dvec3(shown.pixels[i]) - glm::dvec3(expected.pixels[i]);
         const double squared = glm::dot(difference, difference);
-        const auto add_to = [&](Part& part) {
-            part.squared += squared;
-            part.pixels += 1.0;
+        const auto add_to = [&](Part& part, bool is_in) {
+            part.squared += is_in ? squared : 0.0;
+            part.pixels += is_in ? 1.0 : 0.0;
         };
-        add_to(!hole_mask.empty() && hole_mask[i] ? holes_ : reused_);
+        const bool is_hole = !masks.holes.empty() && masks.holes[i];
+        add_to(holes_, is_hole);
+        add_to(reused_, !is_hole);
+        add_to(moving_, !masks.moving.empty() && masks.moving[i]);
         const auto x = static_cast<std::uint32_t>(i) % shown.width_px;
         const auto y = static_cast<std::uint32_t>(i) / shown.width_px;
-        if (std::min({x, y, shown.width_px - 1 - x, shown.height_px - 1 - y}) < kBorder) {
-            add_to(border_);
-        }
+        add_to(border_, std::min({x, y, shown.width_px - 1 - x, shown.height_px - 1 - y}) < kBorder);
     }
 }
 
 nlohmann::ordered_json Scores::to_json() const {
-    return {{"rmse", mean(rmse_)},           {"ssim", mean(ssim_)},
-            {"relative_mse", mean(relative_mse_)}, {"rmse_holes", holes_.rmse()},
-            {"rmse_reused", reused_.rmse()}, {"rmse_border", border_.rmse()}};
+    const auto mean = [&](double PictureScore::*value) -> nlohmann::ordered_json {
+        std::vector<double> values;
+        for (const PictureScore& picture : pictures_) {
+            values.push_back(picture.*value);
+        }
+        return values.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(spread_of(values).mean);
+    };
+    return {{"rmse", mean(&PictureScore::rmse)},
+            {"ssim", mean(&PictureScore::ssim)},
+            {"relative_mse", mean(&PictureScore::relative_mse)},
+            {"rmse_holes", holes_.rmse()},
+            {"rmse_reused", reused_.rmse()},
+            {"rmse_border", border_.rmse()},
+            {"rmse_moving", moving_.rmse()}};
 }
 
 } // namespace fieldcast::bench

@@ -1,37 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "bench/picture_id.h"
 #include "core/image/image_file.h"
-#include "core/lightfield/views.h"
 
 #include <nlohmann/json.hpp>
 #include <vector>
 
 namespace fieldcast::bench {
 
+/// Masks of one picture; those that are empty count as nowhere.
+struct PictureMasks {
+    std::vector<bool> holes;  ///< pixels that the source did not show
+    std::vector<bool> moving; ///< around moving objects
+};
+
+/// Errors of one picture.
+struct PictureScore {
+    PictureId id;
+    double rmse = 0.0;
+    double ssim = 0.0;
+    double relative_mse = 0.0;
+};
+
+/// Mean, extremes and spread of some values.
+struct Spread {
+    double mean = 0.0;
+    double min = 0.0;
+    double max = 0.0;
+    double deviation = 0.0; ///< standard deviation, n in the denominator
+};
+
+/// `values` are not empty.
+Spread spread_of(const std::vector<double>& values);
+
 /// Errors of pictures against references, display-referred (core/image/metrics.h) unless it says linear. RMSE, SSIM and
 /// relMSE are means over pictures, as in the paper; those of parts of pictures are over all pixels of the part.
 class Scores {
 public:
-    /// Scores one view. `hole_mask`: pixels the source did not show, may be empty.
-    void add(const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
-             const std::vector<bool>& hole_mask);
+    void add(const PictureId& id, const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
+             const PictureMasks& masks);
 
+    /// rmse, ssim, relative_mse, rmse_holes, rmse_reused, rmse_border, rmse_moving. null: no picture, or no such
+    /// pixels.
     nlohmann::ordered_json to_json() const;
+    const std::vector<PictureScore>& pictures() const { return pictures_; }
 
 private:
     struct Part {
         double squared = 0.0;
         double pixels = 0.0;
-        double rmse() const;
+        nlohmann::ordered_json rmse() const;
     };
 
-    std::vector<double> rmse_;
-    std::vector<double> ssim_;
-    std::vector<double> relative_mse_;
+    std::vector<PictureScore> pictures_;
     Part holes_;
     Part reused_;
     Part border_; ///< 32 pixels wide
+    Part moving_;
 };
 
 } // namespace fieldcast::bench

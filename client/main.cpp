@@ -99,6 +99,10 @@ int run(client::Options options) {
     } catch (const UserError& error) {
         std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
         return kExitUserError;
+    } catch (const client::net::NetError& error) {
+        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        const int failed = error.is_denied() ? kExitUserError : kExitFailed;
+        return interrupt.was_requested() ? kExitInterrupted : failed;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
         return interrupt.was_requested() ? kExitInterrupted : kExitFailed;

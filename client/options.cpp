@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <numbers>
 #include <sstream>
@@ -21,6 +22,8 @@ Examples:
     fieldcast-client --grid 6x6 --codec jpeg,zstd --quality 80 --frames 30
   A horizontal sweep for a lenticular display, with everything that can be written:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
+  A server elsewhere, with the token that its operator gave out:
+    fieldcast-client --server https://fieldcast.example.org:50151 --token-file token.txt --frames 1
 
 Exit codes: 0 all frames shown, 1 the server or this machine failed, 2 what was asked cannot be had, 130 interrupted.
 )";
@@ -87,8 +90,20 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
 }
 
+void add_access_flags(CLI::App& app, net::Access& access) {
+    app.add_flag("--tls", access.uses_tls, "Encrypt; also by --server https://HOST:PORT");
+    app.add_option("--tls-ca", access.tls_ca,
+                   "PEM file: who may have signed the server's certificate; without it: "
+                   "the authorities that this system trusts");
+    app.add_option("--tls-cert", access.tls_certificate, "PEM file: our certificate, for servers that ask for one");
+    app.add_option("--tls-key", access.tls_key, "PEM file: its private key");
+    app.add_option("--tls-name", access.tls_name, "Name in the server's certificate, if it is not the dialled one");
+    app.add_option("--token-file", access.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
+}
+
 void add_server_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
-    app.add_option("--server", play.server.address, "HOST:PORT")->capture_default_str();
+    app.add_option("--server", play.server.address, "HOST:PORT or https://HOST:PORT")->capture_default_str();
+    add_access_flags(app, play.server.access);
     app.add_option("--channel", play.wish.channel, "Name of the channel; without it: the server's first");
     app.add_flag("--no-reconnect", text.no_reconnect, "Fail when the server cannot be reached or goes away");
     app.add_option("--patience", text.patience_s, "Seconds without any success after which to give up")
@@ -144,8 +159,8 @@ bool contains(const std::vector<std::string>& words, const char* word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-sink::Products read_products(const std::vector<std::string>& words) {
-    sink::Products products;
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    image::LightFieldProducts products;
     products.quilt = contains(words, "quilt");
     products.views = contains(words, "views");
     products.contact_sheet = contains(words, "contact-sheet");
@@ -154,7 +169,23 @@ sink::Products read_products(const std::vector<std::string>& words) {
     return products;
 }
 
+void read_access(play::ServerOptions& server) {
+    net::Access& access = server.access;
+    server.address = net::without_scheme(server.address, access);
+    if (access.tls_certificate.empty() != access.tls_key.empty()) {
+        throw UserError("--tls-cert and --tls-key belong together");
+    }
+    const bool has_tls_flags = !access.tls_ca.empty() || !access.tls_key.empty() || !access.tls_name.empty();
+    if (has_tls_flags && !access.uses_tls) {
+        throw UserError("--tls-ca, --tls-cert, --tls-key and --tls-name need --tls or --server https://HOST:PORT");
+    }
+    if (const char* const token = std::getenv("FIELDCAST_TOKEN")) { // no flag: other users see a process' arguments
+        access.token = token;
+    }
+}
+
 void read_text(const FlagText& text, Options& options) {
+    read_access(options.play.server);
     net::Wish& wish = options.play.wish;
     read_grids(text, wish);
     wish.mode = text.modes.front() == "scene" ? net::Mode::kScene : net::Mode::kViews;

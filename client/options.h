@@ -23,7 +23,7 @@ struct Invocation {
     int exit_code = 0;
 };
 
-/// Reads the command line. Touches nothing else.
+/// Reads the command line and FIELDCAST_TOKEN. Touches nothing else.
 Invocation read_options(int argc, const char* const* argv);
 
 } // namespace fieldcast::client

@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/scene/bundle.h"
 #include "server/channel/channel.h"
+#include "server/channel/offline.h"
 #include "server/ops/flags.h"
 #include "server/ops/port_file.h"
 #include "server/ops/signals.h"
@@ -20,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kOk = 0;
 constexpr int kMachineFailed = 1;
 constexpr int kUserError = 2;
+constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
@@ -82,16 +84,43 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
     const Channels channels = start_channels(device, config);
     const auto feeds = feeds_of(channels);
-    service::GrpcServer server(config.listen, feeds, config.limits);
+    service::GrpcServer server(config.listen, feeds, config.limits, config.security);
     std::optional<ops::PortFile> port_file;
     if (config.port_file) {
         port_file.emplace(*config.port_file, server.port());
     }
-    log::info("SERVING",
-              {{"listen", config.listen.host + ":" + std::to_string(server.port())}, {"channels", channels.size()}});
+    log::info("SERVING", {{"listen", to_text({.host = config.listen.host, .port = server.port()})},
+                          {"tls", config.security.certificates.has_value()},
+                          {"tokens", config.security.tokens.has_value()},
+                          {"channels", channels.size()}});
     const bool is_signal = serve(signals, feeds);
     drain(signals, server, is_signal ? "the server is shutting down" : "a channel failed");
     return is_signal ? kOk : kMachineFailed;
+}
+
+/// Files instead of a service; several channels get a folder each.
+int render(const ops::Config& config, const ops::OfflineJob& job, const ops::StopSignals& signals) {
+    log::set_level(config.log_level);
+    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
+    for (const ops::ChannelChoice& choice : config.channels) {
+        ops::OfflineJob own = job;
+        if (config.channels.size() > 1) {
+            own.out /= choice.name;
+        }
+        const auto progress = [&](const std::string& done) {
+            std::cerr << '\r' << choice.name << ": " << done << "   " << std::flush;
+            return signals.wait(std::chrono::milliseconds(0));
+        };
+        const bool is_done = channel::render_offline(device, config, choice, own, progress);
+        std::cerr << '\n';
+        if (!is_done) {
+            std::cerr << "interrupted: files that were written are complete\n";
+            return kInterrupted;
+        }
+        std::cout << own.out.string() << '\n';
+    }
+    return kOk;
 }
 
 int start(int argc, char** argv) {
@@ -111,6 +140,8 @@ int start(int argc, char** argv) {
     case ops::Invocation::Kind::kCheck:
         std::cout << "the configuration is fine\n";
         return kOk;
+    case ops::Invocation::Kind::kRender:
+        return render(invocation.config, invocation.job, signals);
     case ops::Invocation::Kind::kServe:
         break;
     }

@@ -18,15 +18,15 @@ void main() {
     uint number = params.lists.at[params.hole_count + item];
     HoleFrame frame = params.frames.at[0];
     ViewPixel pixel = locate_pixel(frame.pixels.at[number], params.width, params.height);
-    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     Target target = stored_target(frame.surfaces.at[number], camera, vec2(pixel.x, pixel.y) + 0.5);
     HoleSum sum = HoleSum(vec3(0.0), vec3(0.0), 0.0, 0.0);
     for (uint i = 0u; i < 4u; ++i) {
-        uint view = (params.corner_views[i / 2u] >> (16u * (i & 1u))) & 0xFFFFu;
+        uint view = (params.corner_views >> (8u * i)) & 0xFFu;
         if (view == kNoCornerView) {
             continue;
         }
-        CameraRecord corner = frame.cameras.at[view + 1u];
+        CameraRecord corner = frame.cameras.at[kMaxSources + view];
         vec3 p = camera_project(corner, target.position);
         if (p.z > 0.0) {
             gather_holes_around(frame, view, corner, p.xy, target, sum);

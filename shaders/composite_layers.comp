@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // BLEND surfaces in front of what a pixel sees, composited over it exactly per view. Their illumination is reprojected
-// from the source's layer pages; what those do not show is path traced.
+// from the sources' layer pages; what those do not show is path traced.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "lib/listed_path.glsl"
@@ -11,27 +11,24 @@ layout(push_constant, scalar) uniform Push { TraceListParams params; };
 
 #include "lib/reprojection.glsl"
 
-// Light that a layer's surface sends to the viewer, from the source; false: not to be had there.
-bool reproject_layer(Surface s, uint instance, vec3 direction, float footprint, out vec3 radiance) {
-    CameraRecord source = params.cameras.at[0];
-    vec3 p = camera_project(source, s.position);
-    Target target = make_target(s, instance, direction, max(footprint, p.z / source.focal_px), p.z);
-    Gathered sum = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
-    for (uint page = 1u; p.z > 0.0 && sum.weight == 0.0 && page < params.page_count; ++page) {
-        sum = gather_around(source, page, p.xy, target);
+// Light that a layer's surface sends to the viewer, from the sources; false: not to be had there.
+bool reproject_layer(Surface s, uint instance, vec3 direction, float footprint, float depth, out vec3 radiance) {
+    Reused light = Reused(vec3(0.0), vec3(0.0), false, 0u);
+    for (uint layer = 1u; !light.found && layer <= params.layer_count; ++layer) {
+        light = gather_sources(params.cameras, layer, s, instance, direction, footprint, depth);
     }
     Bsdf b = make_bsdf(s, direction);
-    radiance = s.emission + (sum.diffuse * b.diffuse_modulation + sum.specular * b.specular_modulation) /
-                                max(sum.weight, 1e-6);
-    return sum.weight > 0.0;
+    radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
+    return light.found;
 }
 
 vec3 composite(vec3 behind, uint layer, Visibility seen, CameraRecord camera, vec2 position, uint seed) {
     vec3 direction;
     float cone_width;
     Surface s = visible_surface(camera, position, seen, direction, cone_width);
+    float depth = dot(s.position - camera.origin, camera.forward);
     vec3 own;
-    if (!reproject_layer(s, seen.instance, direction, cone_width, own)) {
+    if (!reproject_layer(s, seen.instance, direction, cone_width, depth, own)) {
         own = trace_radiance(params, s, direction, cone_width, 1.0 / camera.focal_px, hash_combine(seed, layer + 1u));
         atomicAdd(params.counters.at[kCounterLayerPaths], 1u);
     }
@@ -45,7 +42,7 @@ void main() {
     }
     uint index = params.list.at[item];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
-    CameraRecord camera = params.cameras.at[pixel.view + 1u];
+    CameraRecord camera = params.cameras.at[kMaxSources + pixel.view];
     uint seed = pixel_seed(params.views.at[pixel.view].seed, pixel.x, pixel.y);
     vec3 radiance = unpack_half3(params.radiance.at[index]);
     for (uint layer = kMaxLayers; layer-- > 0u;) { // farthest first

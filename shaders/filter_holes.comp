@@ -14,6 +14,17 @@ const int kRadius = 3;
 const float kSourceFrames = 8.0; // of one hole are worth one pixel of the denoised source
 const float kSlack = 2.0;        // of the distance tests, which are made for one pixel
 
+// Adds the pixel `step` from the target's place in every source.
+void gather_sources_at(CameraBuffer cameras, ivec2 step, float weight, Target target, inout Gathered around) {
+    for (uint i = 0u; i < params.settings.source_count; ++i) {
+        CameraRecord source = cameras.at[i];
+        vec3 p = camera_project(source, target.position);
+        if (p.z > 0.0) {
+            gather(source, i, ivec2(floor(p.xy)) + step, weight, target, kSlack, around);
+        }
+    }
+}
+
 void main() {
     uint number = linear_index();
     if (number >= params.hole_count) {
@@ -21,11 +32,9 @@ void main() {
     }
     HoleFrame frame = params.frames.at[0];
     ViewPixel pixel = locate_pixel(frame.pixels.at[number], params.width, params.height);
-    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
-    CameraRecord source = frame.cameras.at[0];
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     Target target = stored_target(frame.surfaces.at[number], camera, vec2(pixel.x, pixel.y) + 0.5);
     target.tangential_limit_m *= float(kRadius); // taps lie that far away by intent; the plane decides
-    vec3 p = camera_project(source, target.position);
     HoleLight own = unpack_hole_light(frame.light.at[number]);
     float own_weight = max(own.frames, 1.0);
     HoleSum sum = HoleSum(own.diffuse * own_weight, own.specular * own_weight, 0.0, own_weight);
@@ -39,8 +48,8 @@ void main() {
         float weight = exp(-0.25 * dot(vec2(step), vec2(step)));
         if (hole_number(frame, pixel.view, at, params.width, params.height) != kNoIndex) {
             gather_hole(frame, pixel.view, camera, at, weight, target, kSlack, true, sum);
-        } else if (p.z > 0.0) {
-            gather(source, 0u, ivec2(floor(p.xy)) + step, weight * kSourceFrames, target, kSlack, around);
+        } else {
+            gather_sources_at(frame.cameras, step, weight * kSourceFrames, target, around);
         }
     }
     HoleLight light;

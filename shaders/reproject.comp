@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Reprojects the source's illumination into every pixel of every view and remodulates it with the view's own material.
+// Reprojects the sources' illumination into every pixel of every view and remodulates it with the view's own material.
 // What cannot be reused becomes a hole. Sky and emission are exact.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
@@ -27,23 +27,13 @@ bool reproject(uint view, Visibility seen, CameraRecord camera, vec2 position, o
     vec3 at = intersect_plane(triangle, camera.origin, direction);
     direction = normalize(direction);
     Surface s = make_surface(triangle, at.xy, direction, at.z / camera.focal_px);
-    CameraRecord source = params.cameras.at[0];
-    vec3 p = camera_project(source, s.position);
-    vec2 size = vec2(camera_size(source));
-    radiance = vec3(0.0);
-    if (!(p.z > 0.0) || any(lessThan(p.xy, vec2(0.0))) || any(greaterThanEqual(p.xy, size))) {
-        discard_pixel(view, uvec2(position), kDiscardFrustum);
-        return false;
-    }
-    float footprint = max(p.z / source.focal_px, at.z / camera.focal_px);
-    Gathered sum = gather_around(source, 0u, p.xy, make_target(s, seen.instance, direction, footprint, at.z));
-    if (sum.weight == 0.0) {
-        discard_pixel(view, uvec2(position), sum.reason);
+    Reused light = gather_sources(params.cameras, 0u, s, seen.instance, direction, at.z / camera.focal_px, at.z);
+    if (!light.found) {
+        discard_pixel(view, uvec2(position), light.reason);
         return false;
     }
     Bsdf b = make_bsdf(s, direction);
-    vec3 reflected = sum.diffuse * b.diffuse_modulation + sum.specular * b.specular_modulation;
-    radiance = s.emission + reflected / sum.weight;
+    radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;
     return true;
 }
 
@@ -53,7 +43,7 @@ void main() {
         return;
     }
     uint pixel = id.z * view_stride(params.width, params.height) + id.y * params.width + id.x;
-    CameraRecord camera = params.cameras.at[id.z + 1u];
+    CameraRecord camera = params.cameras.at[kMaxSources + id.z];
     vec2 position = vec2(id.xy) + 0.5;
     Visibility seen = params.visibility.at[pixel];
     vec3 radiance;

@@ -19,7 +19,7 @@ void main() {
     HoleFrame frame = params.frames.at[0];
     uint index = frame.pixels.at[number];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
-    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     vec3 direction;
     float cone_width;
     Surface s = visible_surface(camera, vec2(pixel.x, pixel.y) + 0.5, params.visibility.at[index], direction, cone_width);

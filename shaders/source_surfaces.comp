@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// G-buffer planes of the source, every page, in wire precision, from its visibility.
+// G-buffer planes of the sources, every page, in wire precision, from its visibility.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
 #include "lib/linear_index.glsl"
@@ -24,12 +24,13 @@ void main() {
         return;
     }
     PagePixel at = locate_page_pixel(index, params.width, params.height);
-    Visibility seen = page_visibility(params.visibility, params.layers, at.page, at.pixel);
+    Visibility seen = page_visibility(params.visibility, params.layers, at.page, params.source_count,
+                                      view_stride(params.width, params.height), at.pixel);
     if (seen.instance == kNoInstance) {
         store(index, uintBitsToFloat(0x7F800000u), 0u, kNoIndex, 0u);
         return;
     }
-    CameraRecord camera = params.camera.at[0];
+    CameraRecord camera = params.cameras.at[source_of_page(at.page, params.source_count)];
     vec3 direction = camera_direction(camera, vec2(at.x, at.y) + 0.5);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 meets = intersect_plane(triangle, camera.origin, direction);

@@ -28,7 +28,7 @@ Target past_target(Target now, Visibility seen, vec3 weights, uvec3 vertices, Ca
 
 HoleSum remember(uint view, Target target, Visibility seen, vec3 weights, uvec3 vertices) {
     HoleFrame frame = params.frames.at[1];
-    CameraRecord before = frame.cameras.at[view + 1u];
+    CameraRecord before = frame.cameras.at[kMaxSources + view];
     Target past = past_target(target, seen, weights, vertices, before);
     vec3 p = camera_project(before, past.position);
     HoleSum sum = HoleSum(vec3(0.0), vec3(0.0), 0.0, 0.0);
@@ -43,16 +43,18 @@ bool is_isolated(uint view, uvec2 at) {
     return uint(bitCount(word)) <= kIsolatedCount;
 }
 
-// Light of the same surface within three pixels of the hole's place in the source.
+// Light of the same surface within three pixels of the hole's place in the sources.
 Gathered gather_wide(Target target) {
-    CameraRecord source = params.frames.at[0].cameras.at[0];
-    vec3 p = camera_project(source, target.position);
     Gathered sum = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
-    ivec2 nearest = ivec2(floor(p.xy));
-    for (int i = 0; p.z > 0.0 && i < 49; ++i) {
-        ivec2 at = nearest + ivec2(i % 7 - 3, i / 7 - 3);
-        vec2 d = vec2(at) + 0.5 - p.xy;
-        gather(source, 0u, at, exp(-0.5 * dot(d, d)), target, 3.0, sum);
+    for (uint source = 0u; source < params.settings.source_count; ++source) {
+        CameraRecord camera = params.frames.at[0].cameras.at[source];
+        vec3 p = camera_project(camera, target.position);
+        ivec2 nearest = ivec2(floor(p.xy));
+        for (int i = 0; p.z > 0.0 && i < 49; ++i) {
+            ivec2 at = nearest + ivec2(i % 7 - 3, i / 7 - 3);
+            vec2 d = vec2(at) + 0.5 - p.xy;
+            gather(camera, source, at, exp(-0.5 * dot(d, d)), target, 3.0, sum);
+        }
     }
     return sum;
 }
@@ -72,7 +74,7 @@ void main() {
     HoleFrame frame = params.frames.at[0];
     uint index = frame.pixels.at[number];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
-    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     Visibility seen = params.visibility.at[index];
     vec3 direction = camera_direction(camera, vec2(pixel.x, pixel.y) + 0.5);
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);

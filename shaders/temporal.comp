@@ -21,6 +21,7 @@ layout(set = 1, binding = kTemporalSpecular) uniform samplerBuffer specular_;
 layout(push_constant, scalar) uniform Push { TemporalParams params; };
 
 const float kMaxHistory = 64.0;
+const float kMotionFootprints = 0.1; // per frame, of a surface's point
 
 struct History {
     vec3 diffuse;
@@ -28,6 +29,7 @@ struct History {
     vec4 moments;
     float frames;
     float weight;
+    uint accepted; // HistoryTaps
 };
 
 // A surface point where it was in the frame before.
@@ -40,7 +42,7 @@ struct Past {
     float tangential_limit_m;
 };
 
-void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, inout History sum) {
+void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, uint bit, inout History sum) {
     ivec2 size = ivec2(params.width, params.height);
     if (weight <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) {
         return;
@@ -59,23 +61,24 @@ void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, i
         sum.moments += weight * texelFetch(previous_moments_, texel);
         sum.frames += weight * texelFetch(previous_length_, texel).x;
         sum.weight += weight;
+        sum.accepted |= 1u << bit;
     }
 }
 
 History gather_history(CameraRecord camera, uint page, vec2 p, Past past) {
-    History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), 0.0, 0.0);
+    History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), 0.0, 0.0, 0u);
     vec2 corner = floor(p - 0.5);
     vec2 f = p - 0.5 - corner;
     ivec2 base = ivec2(corner);
-    gather(camera, page, base, (1.0 - f.x) * (1.0 - f.y), past, sum);
-    gather(camera, page, base + ivec2(1, 0), f.x * (1.0 - f.y), past, sum);
-    gather(camera, page, base + ivec2(0, 1), (1.0 - f.x) * f.y, past, sum);
-    gather(camera, page, base + ivec2(1, 1), f.x * f.y, past, sum);
+    gather(camera, page, base, (1.0 - f.x) * (1.0 - f.y), past, 0u, sum);
+    gather(camera, page, base + ivec2(1, 0), f.x * (1.0 - f.y), past, 1u, sum);
+    gather(camera, page, base + ivec2(0, 1), (1.0 - f.x) * f.y, past, 2u, sum);
+    gather(camera, page, base + ivec2(1, 1), f.x * f.y, past, 3u, sum);
     bool retry = sum.weight < 0.05;
     ivec2 nearest = ivec2(floor(p));
     for (int i = 0; retry && i < 9; ++i) {
         ivec2 at = nearest + ivec2(i % 3 - 1, i / 3 - 1);
-        gather(camera, page, at, 1.0, past, sum);
+        gather(camera, page, at, 1.0, past, uint(i) + 4u, sum);
     }
     return sum;
 }
@@ -112,6 +115,12 @@ void store(uint pixel, vec3 diffuse, vec3 specular, vec4 moments, float frames) 
     params.history_length.at[pixel] = frames;
 }
 
+void keep_taps(uint pixel, vec2 position, uint accepted) {
+    if ((params.flags & kFlagKeepTaps) != 0u) {
+        params.taps.at[pixel] = HistoryTaps(position, accepted);
+    }
+}
+
 void main() {
     uint index = linear_index();
     if (index >= params.width * params.height * params.page_count) {
@@ -123,24 +132,33 @@ void main() {
     float l_diffuse = luminance(diffuse);
     float l_specular = luminance(specular);
     vec4 moments = vec4(l_diffuse, l_diffuse * l_diffuse, l_specular, l_specular * l_specular);
-    Visibility seen = page_visibility(params.visibility, params.layers, at.page, at.pixel);
+    Visibility seen = page_visibility(params.visibility, params.layers, at.page, params.source_count,
+                                      view_stride(params.width, params.height), at.pixel);
     if ((params.flags & kFlagTemporal) == 0u || seen.instance == kNoInstance) {
         store(index, diffuse, specular, moments, 1.0);
+        keep_taps(index, vec2(0.0), 0u);
         return;
     }
-    CameraRecord now = params.cameras.at[0];
-    CameraRecord before = params.cameras.at[1];
+    uint source = source_of_page(at.page, params.source_count);
+    CameraRecord now = params.cameras.at[source];
+    CameraRecord before = params.cameras.at[params.source_count + source];
     Past past = past_surface(seen, now, before, vec2(at.x, at.y) + 0.5);
-    past.normal = unpack_normal(texelFetch(geometry_, int(index)).y);
+    uvec4 geometry = texelFetch(geometry_, int(index));
+    past.normal = unpack_normal(geometry.y);
     vec3 p = camera_project(before, past.position);
     History history = gather_history(before, at.page, p.xy, past);
     if (!(p.z > 0.0) || history.weight < 0.01) {
         store(index, diffuse, specular, moments, 1.0);
+        keep_taps(index, vec2(0.0), 0u);
         return;
     }
+    keep_taps(index, p.xy, history.accepted);
     float scale = 1.0 / history.weight;
-    float frames = min(history.frames * scale + 1.0, kMaxHistory);
-    float alpha = max(params.alpha, 1.0 / frames);
+    float frames = min(history.frames * scale + 1.0, params.alpha > 0.0 ? kMaxHistory : 1e6);
+    // Light on a surface that moves is not what it was elsewhere: the short average for it.
+    vec3 here = now.origin + camera_direction(now, vec2(at.x, at.y) + 0.5) * uintBitsToFloat(geometry.x);
+    bool moves = length(past.position - here) > kMotionFootprints * uintBitsToFloat(geometry.x) / now.focal_px;
+    float alpha = max(moves ? params.moments_alpha : params.alpha, 1.0 / frames);
     store(index, mix(history.diffuse * scale, diffuse, alpha), mix(history.specular * scale, specular, alpha),
           mix(history.moments * scale, moments, max(params.moments_alpha, 1.0 / frames)), frames);
 }

@@ -22,18 +22,16 @@ void main() {
     HoleFrame frame = params.frames.at[0];
     uint index = frame.pixels.at[number];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
-    CameraRecord camera = frame.cameras.at[pixel.view + 1u];
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     vec3 direction;
     float cone_width;
     Surface s = visible_surface(camera, vec2(pixel.x, pixel.y) + 0.5, params.visibility.at[index], direction, cone_width);
     uint seed = pixel_seed(params.views.at[pixel.view].seed, pixel.x, pixel.y);
-    PathSettings settings = PathSettings(params.max_bounces & 0xFFFFu,
-                                         ((params.max_bounces >> 16) & kFlagNextEventEstimation) != 0u,
-                                         params.max_indirect);
+    PathSettings settings = make_path_settings(params.path, params.max_indirect);
     Illumination traced = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,
                                              1.0 / camera.focal_px, seed);
     HoleLight light = unpack_hole_light(frame.light.at[number]);
-    light.frames = min(light.frames + 1.0, 32.0);
+    light.frames = min(light.frames + 1.0, params.alpha > 0.0 ? 32.0 : 2048.0); // as half floats count
     float alpha = max(params.alpha, 1.0 / light.frames);
     light.diffuse = mix(light.diffuse, traced.diffuse, alpha);
     light.specular = mix(light.specular, traced.specular, alpha);

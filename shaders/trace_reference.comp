@@ -16,8 +16,7 @@ vec3 trace_primary(SceneInfo info, CameraRecord camera, vec3 direction, float st
     }
     float cone_width = hit.t / (stretch * camera.focal_px);
     Surface s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width);
-    PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
-                                         params.max_indirect);
+    PathSettings settings = make_path_settings(params.path, params.max_indirect);
     Illumination light = trace_path(info, settings, s, direction, cone_width, 1.0 / camera.focal_px, rng);
     Bsdf b = make_bsdf(s, direction);
     return s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Path traces every pixel of the source view, every page; writes noisy demodulated illumination.
+// Path traces every pixel of the sources, every page; writes noisy demodulated illumination.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
 #include "lib/pages.glsl"
@@ -11,8 +11,7 @@ layout(push_constant, scalar) uniform Push { TraceSourceParams params; };
 
 void add_samples(uint index, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
     SceneInfo info = load_scene_info();
-    PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
-                                         params.max_indirect);
+    PathSettings settings = make_path_settings(params.path, params.max_indirect);
     uint seed = hash_combine(params.seed, index);
     for (uint i = 0u; i < params.samples_per_pixel; ++i) {
         Sampler rng = make_sampler(seed, params.first_sample + i);
@@ -33,10 +32,11 @@ void main() {
     }
     uint pixel = id.y * params.width + id.x;
     uint index = id.z * params.width * params.height + pixel;
-    Visibility seen = page_visibility(params.visibility, params.layers, id.z, pixel);
+    Visibility seen = page_visibility(params.visibility, params.layers, id.z, params.source_count,
+                                      view_stride(params.width, params.height), pixel);
     Illumination sum = Illumination(vec3(0.0), vec3(0.0));
     if (seen.instance != kNoInstance) {
-        CameraRecord camera = params.camera.at[0];
+        CameraRecord camera = params.cameras.at[source_of_page(id.z, params.source_count)];
         vec3 direction = camera_direction(camera, vec2(id.xy) + 0.5);
         WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
         vec3 at = intersect_plane(triangle, camera.origin, direction);

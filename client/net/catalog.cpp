@@ -61,6 +61,7 @@ private:
 std::vector<ChannelInfo> list_channels(const Connection& connection) {
     const auto stub = v1::Catalog::NewStub(connection.state().channel);
     grpc::ClientContext context;
+    connection.state().prepare(context);
     context.set_deadline(std::chrono::system_clock::now() + kUnaryDeadline);
     v1::ListChannelsResponse response;
     const grpc::Status status = stub->ListChannels(&context, {}, &response);
@@ -82,6 +83,7 @@ void fetch_scene(const Connection& connection, const scene::SceneHash& hash, std
                  const std::function<void(const BundlePiece&)>& take, const std::stop_token& stop) {
     const auto stub = v1::Catalog::NewStub(connection.state().channel);
     grpc::ClientContext context;
+    connection.state().prepare(context);
     context.set_deadline(std::chrono::system_clock::now() + kFetchDeadline);
     v1::FetchSceneRequest request;
     request.set_scene_hash(std::string(hash.begin(), hash.end()));

@@ -9,6 +9,10 @@ namespace fieldcast::client::net {
 
 struct Connection::State {
     std::shared_ptr<grpc::Channel> channel;
+    std::string token; ///< empty: none
+
+    /// Call it for every call before it starts.
+    void prepare(grpc::ClientContext& context) const;
 };
 
 /// The one place where gRPC's status becomes ours. `what` names the call for people.

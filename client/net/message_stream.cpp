@@ -18,6 +18,7 @@ namespace fieldcast::client::net {
 class MessageStream::Reactor final : public grpc::ClientBidiReactor<v1::ClientMessage, v1::ServerMessage> {
 public:
     explicit Reactor(const Connection& connection) : stub_(v1::LightField::NewStub(connection.state().channel)) {
+        connection.state().prepare(context_);
         stub_->async()->Open(&context_, this);
         AddHold();
         StartRead(&reading_);

@@ -138,8 +138,8 @@ void Player::write(const std::filesystem::path& folder) const {
     if (options_.products.source_exr && scene_side_ != nullptr) {
         source = scene_side_->player->source(); // of the frame played last, which is the one shown last
     }
-    const sink::Picture picture{last_->grid, last_->views, source ? &*source : nullptr};
-    sink::write_picture(folder, picture, options_.products);
+    const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
+    image::write_light_field(folder, picture, options_.products);
 }
 
 void Player::finish() {

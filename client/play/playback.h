@@ -3,7 +3,7 @@
 
 #include "client/play/receiver.h"
 #include "client/play/statistics.h"
-#include "client/sink/picture_files.h"
+#include "core/image/light_field_files.h"
 
 #include <filesystem>
 #include <functional>
@@ -21,7 +21,7 @@ struct PlayOptions {
     std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
     Save save = Save::kLast;
     std::filesystem::path out = "out";
-    sink::Products products;
+    image::LightFieldProducts products;
     // Of mode kScene:
     std::filesystem::path cache_folder;
     std::string device;             ///< part of the name; empty: the best

@@ -59,6 +59,8 @@ void Receiver::run(const std::stop_token& stop) {
                 break;
             }
         }
+    } catch (const UserError& error) {
+        *failure_.lock() = Failure{error.what(), true};
     } catch (const std::exception& error) {
         log::error("receiver failed", {{"reason", error.what()}});
         *failure_.lock() = Failure{error.what(), false};
@@ -69,7 +71,7 @@ void Receiver::run(const std::stop_token& stop) {
 Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts& attempts) {
     constexpr auto kLookAtStop = 100ms;
     constexpr auto kFinishGrace = 2s;
-    const net::Connection connection(server_.address);
+    const net::Connection connection(server_.address, server_.access);
     SessionState state;
     state.attempts = &attempts;
     state.session = std::make_shared<net::Session>(connection, wish_, pool_);
@@ -88,27 +90,26 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
 }
 
 void Receiver::handle(net::Event event, SessionState& state) {
-    std::visit(
-        Overloaded{
-            [&](net::Agreement& agreement) { agreed(std::move(agreement), state); },
-            [&](net::FrameArrived& frame) { arrived(std::move(frame), state); },
-            [&](net::FrameFailed& failed) {
-                ++counts_.lock()->failed;
-                log::warn("frame failed", {{"reason", failed.reason}});
-            },
-            [&](net::FrameAborted&) { ++counts_.lock()->aborted; },
-            [&](net::Refused& refused) {
-                state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
-            },
-            [&](net::GoingAway& going) {
-                log::info("server is going away", {{"reason", going.reason}});
-                state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
-            },
-            [&](net::Ended& ended) {
-                const std::string message = ended.error.what();
-                state.end = SessionEnd{message.empty() ? "the server finished" : message, ended.error.is_transient()};
-            }},
-        event);
+    std::visit(Overloaded{[&](net::Agreement& agreement) { agreed(std::move(agreement), state); },
+                          [&](net::FrameArrived& frame) { arrived(std::move(frame), state); },
+                          [&](net::FrameFailed& failed) {
+                              ++counts_.lock()->failed;
+                              log::warn("frame failed", {{"reason", failed.reason}});
+                          },
+                          [&](net::FrameAborted&) { ++counts_.lock()->aborted; },
+                          [&](net::Refused& refused) {
+                              state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
+                          },
+                          [&](net::GoingAway& going) {
+                              log::info("server is going away", {{"reason", going.reason}});
+                              state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
+                          },
+                          [&](net::Ended& ended) {
+                              const std::string message = ended.error.what();
+                              state.end = SessionEnd{message.empty() ? "the server finished" : message,
+                                                     ended.error.is_transient(), ended.error.is_denied()};
+                          }},
+               event);
 }
 
 void Receiver::agreed(net::Agreement agreement, SessionState& state) {

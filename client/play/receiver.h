@@ -16,6 +16,7 @@ namespace fieldcast::client::play {
 /// How to reach a server, and what to do when that fails.
 struct ServerOptions {
     std::string address = "127.0.0.1:50151"; ///< "host:port"
+    net::Access access{};
     bool reconnects = true;
     std::chrono::milliseconds patience{30'000}; ///< gives up when nothing has worked for so long
 };
@@ -23,7 +24,7 @@ struct ServerOptions {
 /// Why no more frames come.
 struct Failure {
     std::string message;
-    bool was_refused = false; ///< the server will not do what was asked: another wish may work
+    bool was_refused = false; ///< the server will not do what was asked, or for whom: another wish or token may work
 };
 
 /// Keeps a session with a server: opens it, decodes frames into the mailbox, comes back after interruptions. Has one

@@ -27,7 +27,7 @@ template <class Attempt> auto persistently(const ServerOptions& server, const st
     Attempts attempts(server.reconnects, server.patience);
     while (true) {
         try {
-            return attempt(net::Connection(server.address));
+            return attempt(net::Connection(server.address, server.access));
         } catch (const net::NetError& error) {
             if (!error.is_transient() || !attempts.wait_for_next(stop)) {
                 throw;
@@ -57,7 +57,7 @@ scene::Scene obtain_scene(const ServerOptions& server, const std::string& channe
     SceneCache cache(cache_folder);
     // A cut transfer leaves what arrived in the cache, so the next attempt asks only for the rest.
     const FetchBundle fetch = [&](const scene::SceneHash& wanted, std::uint64_t offset, const TakePiece& take) {
-        const net::Connection connection(server.address);
+        const net::Connection connection(server.address, server.access);
         net::fetch_scene(
             connection, wanted, offset, [&](const net::BundlePiece& piece) { take(piece.total_bytes, piece.bytes); },
             stop);

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// SSIM follows: Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli. Image Quality Assessment: From Error Visibility
-// to Structural Similarity. IEEE TIP 13(4), 2004, section III.B, eq. 13. Differs: the mean leaves out the 5 px border
-// where the window would leave the image, as scikit-image does.
+// SSIM (ssim_window.h): the mean leaves out the 5 px border where the window would leave the image, as scikit-image
+// does.
 #include "core/image/metrics.h"
 
 #include "core/base/error.h"
+#include "core/image/ssim_window.h"
 #include "core/image/transfer.h"
 
-#include <array>
 #include <cmath>
 
 namespace fieldcast::image {
 
 namespace {
-
-constexpr int kRadius = 5; // 3.5 σ, rounded: 11 taps
-constexpr double kSigma = 1.5;
-constexpr double kC1 = 0.01 * 0.01;
-constexpr double kC2 = 0.03 * 0.03;
 
 void check_sizes(const RgbF32& a, const RgbF32& b) {
     FC_ASSERT(a.width_px == b.width_px && a.height_px == b.height_px, "images have one size");
@@ -44,12 +38,11 @@ struct Field {
     std::vector<double> values;
 };
 
-Field luma(const RgbF32& image) {
+Field luma_field(const RgbF32& image) {
     Field field{image.width_px, image.height_px, {}};
     field.values.reserve(image.pixels.size());
-    for (const glm::vec3& p : image.pixels) {
-        field.values.push_back(0.2126 * static_cast<double>(p.r) + 0.7152 * static_cast<double>(p.g) +
-                               0.0722 * static_cast<double>(p.b));
+    for (const glm::vec3& pixel : image.pixels) {
+        field.values.push_back(luma(pixel));
     }
     return field;
 }
@@ -62,24 +55,10 @@ Field product(const Field& a, const Field& b) {
     return field;
 }
 
-std::array<double, 2 * kRadius + 1> gaussian_taps() {
-    std::array<double, 2 * kRadius + 1> taps{};
-    double sum = 0.0;
-    for (int i = -kRadius; i <= kRadius; ++i) {
-        const double tap = std::exp(-0.5 * i * i / (kSigma * kSigma));
-        taps[static_cast<std::size_t>(i + kRadius)] = tap;
-        sum += tap;
-    }
-    for (double& tap : taps) {
-        tap /= sum;
-    }
-    return taps;
-}
-
 /// Weighted mean over the window around each pixel whose window lies inside: smaller by the radius on each side.
 Field window_mean(const Field& field) {
-    static const auto taps = gaussian_taps();
-    const std::size_t width = field.width - 2 * kRadius;
+    const SsimTaps& taps = ssim_taps();
+    const std::size_t width = field.width - 2 * kSsimRadius;
     Field across{width, field.height, std::vector<double>(width * field.height)};
     for (std::size_t y = 0; y < field.height; ++y) {
         for (std::size_t x = 0; x < width; ++x) {
@@ -88,7 +67,7 @@ Field window_mean(const Field& field) {
             }
         }
     }
-    const std::size_t height = field.height - 2 * kRadius;
+    const std::size_t height = field.height - 2 * kSsimRadius;
     Field result{width, height, std::vector<double>(width * height)};
     for (std::size_t y = 0; y < height; ++y) {
         for (std::size_t i = 0; i < taps.size(); ++i) {
@@ -133,9 +112,9 @@ double psnr_db(const RgbF32& image, const RgbF32& reference) {
 
 double ssim(const RgbF32& image, const RgbF32& reference) {
     check_sizes(image, reference);
-    FC_ASSERT(image.width_px > 2 * kRadius && image.height_px > 2 * kRadius, "the window fits into the image");
-    const Field x = luma(image);
-    const Field y = luma(reference);
+    FC_ASSERT(image.width_px > 2 * kSsimRadius && image.height_px > 2 * kSsimRadius, "the window fits into the image");
+    const Field x = luma_field(image);
+    const Field y = luma_field(reference);
     const Field mean_x = window_mean(x);
     const Field mean_y = window_mean(y);
     const Field mean_xx = window_mean(product(x, x));
@@ -143,11 +122,7 @@ double ssim(const RgbF32& image, const RgbF32& reference) {
     const Field mean_xy = window_mean(product(x, y));
     double sum = 0.0;
     for (std::size_t i = 0; i < mean_x.values.size(); ++i) {
-        const double mx = mean_x.values[i];
-        const double my = mean_y.values[i];
-        const double variances = mean_xx.values[i] - mx * mx + mean_yy.values[i] - my * my;
-        const double covariance = mean_xy.values[i] - mx * my;
-        sum += (2.0 * mx * my + kC1) * (2.0 * covariance + kC2) / ((mx * mx + my * my + kC1) * (variances + kC2));
+        sum += ssim_of({mean_x.values[i], mean_y.values[i], mean_xx.values[i], mean_yy.values[i], mean_xy.values[i]});
     }
     return sum / static_cast<double>(mean_x.values.size());
 }

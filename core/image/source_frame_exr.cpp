@@ -44,7 +44,7 @@ Layout layout_of(PlaneSemantic semantic) {
 }
 
 void describe(OIIO::ImageSpec& spec, const FrameHeader& header) {
-    const Camera camera = with_guard_band(header.source, header.guard_band);
+    const Camera camera = widened_source(header, 0);
     // OpenEXR multiplies row vectors, so its matrices are transposed; glm stores columns: the same 16 numbers.
     const glm::mat4 camera_from_world = glm::inverse(camera.world_from_camera);
     spec.attribute("worldtocamera", OIIO::TypeDesc::TypeMatrix, &camera_from_world[0][0]);

@@ -30,14 +30,14 @@ struct Rectangle {
     std::uint64_t area() const { return static_cast<std::uint64_t>(x1 - x0) * (y1 - y0); }
 };
 
-/// Offsets of the views along one axis, times f·b: with 1/z − 1/z_c the displacement in pixels.
-std::vector<float> displacements(const Camera& source, const ViewGrid& grid, bool is_horizontal) {
+/// Offsets of the views from `at` along one axis, times f·b: with 1/z − 1/z_c the displacement in pixels.
+std::vector<float> displacements(const Camera& source, const ViewGrid& grid, LatticePosition at, bool is_horizontal) {
     std::vector<float> result;
     const std::uint32_t count = is_horizontal ? grid.cols : grid.rows;
     const float spacing_m = is_horizontal ? grid.geometry.spacing_m.x : grid.geometry.spacing_m.y;
     for (std::uint32_t i = 0; i < count; ++i) {
         const LatticePosition position = lattice_position(grid, is_horizontal ? 0 : i, is_horizontal ? i : 0);
-        const float steps = is_horizontal ? position.col() : position.row();
+        const float steps = is_horizontal ? position.col() - at.col() : position.row() - at.row();
         result.push_back(steps * spacing_m * source.focal_px);
     }
     return result;
@@ -80,9 +80,9 @@ private:
 };
 
 NeedTable count_needs(const Camera& source, const Camera& widened, const Rectangle& image,
-                      std::span<const float> depth_m, const ViewGrid& grid) {
-    const std::vector<float> across = displacements(source, grid, true);
-    const std::vector<float> down = displacements(source, grid, false);
+                      std::span<const float> depth_m, const ViewGrid& grid, LatticePosition at) {
+    const std::vector<float> across = displacements(source, grid, at, true);
+    const std::vector<float> down = displacements(source, grid, at, false);
     const auto width = static_cast<float>(source.width_px);
     const auto height = static_cast<float>(source.height_px);
     NeedTable table(widened.width_px, widened.height_px);
@@ -196,13 +196,13 @@ Reach reach(const std::vector<float>& displacements_px_m, float nearest_m, float
 } // namespace
 
 GuardBandChoice choose_guard_band(const Camera& source, const GuardBand& widest, std::span<const float> depth_m,
-                                  const ViewGrid& largest, double target_share, double max_extra_share) {
+                                  const ViewGrid& largest, double target_share, double max_extra_share, LatticePosition at) {
     const Camera widened = with_guard_band(source, widest);
     FC_ASSERT(depth_m.size() == static_cast<std::size_t>(widened.width_px) * widened.height_px,
               "depth image has the size of the widened camera");
     const Rectangle image{widest.left_px, widest.left_px + source.width_px, widest.top_px,
                           widest.top_px + source.height_px};
-    const NeedTable table = count_needs(source, widened, image, depth_m, largest);
+    const NeedTable table = count_needs(source, widened, image, depth_m, largest, at);
     const auto total = static_cast<double>(table.sum({0, widened.width_px, 0, widened.height_px}));
     const auto image_area = static_cast<double>(image.area());
     const double max_area = image_area * (1.0 + max_extra_share);
@@ -218,10 +218,10 @@ GuardBandChoice choose_guard_band(const Camera& source, const GuardBand& widest,
     return choice;
 }
 
-GuardBand widest_guard_band(const Camera& source, const ViewGrid& grid, float nearest_m) {
+GuardBand widest_guard_band(const Camera& source, const ViewGrid& grid, float nearest_m, LatticePosition at) {
     FC_ASSERT(nearest_m > 0.0F, "depths are positive");
-    const Reach across = reach(displacements(source, grid, true), nearest_m, grid.geometry.convergence_m);
-    const Reach down = reach(displacements(source, grid, false), nearest_m, grid.geometry.convergence_m);
+    const Reach across = reach(displacements(source, grid, at, true), nearest_m, grid.geometry.convergence_m);
+    const Reach down = reach(displacements(source, grid, at, false), nearest_m, grid.geometry.convergence_m);
     return {band_px(-across.least_px, source.width_px), band_px(across.most_px, source.width_px),
             band_px(-down.least_px, source.height_px), band_px(down.most_px, source.height_px)};
 }

@@ -12,6 +12,7 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
     }
     preset.has_guard_band = false;
     preset.settings.holes = HoleFilling::path_traced();
+    preset.settings.light_sampling = LightSampling::plain();
     if (name == "reprojected") {
         preset.settings.denoiser = Denoiser::kNone;
         preset.settings.temporal_accumulation = false;

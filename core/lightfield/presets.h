@@ -9,6 +9,7 @@ namespace fieldcast {
 struct Preset {
     RenderSettings settings;
     bool has_guard_band = true;
+    std::string sources = "middle"; ///< parse_sources()
 };
 
 /// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf": SVGF with its paper's parameters.

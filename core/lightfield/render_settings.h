@@ -42,17 +42,32 @@ struct HoleFilling {
 /// `rows` × `cols`. Empty if malformed.
 std::optional<HoleFilling> parse_hole_filling(const std::string& text, std::uint32_t rows, std::uint32_t cols);
 
+inline constexpr std::uint32_t kMaxLightCandidates = 64;
+
+/// How next event estimation chooses its light sample; every choice is unbiased (docs/lightfield.md).
+struct LightSampling {
+    std::uint32_t candidates = 4; ///< resampled importance sampling from so many unshadowed candidates, 1 to 64
+    bool each_kind = false;       ///< at the first vertex: a sample of each kind of light (environment, emissive, punctual)
+
+    /// One sample of all lights, as in the paper.
+    static constexpr LightSampling plain() { return {1, false}; }
+    bool operator==(const LightSampling&) const = default;
+};
+
 /// Every parameter that changes a pixel, on both sides of the wire. Travels in each frame header.
 struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
+    LightSampling light_sampling;
     /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. Where little of the picture is lit, its
     /// light is far above the mean: 20 took a third of Sponza's indirect light (docs/benchmarks.md).
     float indirect_clamp = 100.0F;
     Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2
+    /// Reference mode: while nothing moves, frames are averaged without limits and without denoiser.
+    bool accumulate = false;
     ToneMap tone_map = ToneMap::kClampSrgb;
     float exposure = 1.0F; ///< multiplies linear radiance before the tone map
     ReprojectionThresholds reprojection;

@@ -10,9 +10,18 @@ const Plane* SourceFrame::find(PlaneSemantic semantic) const {
     return found == planes.end() ? nullptr : &*found;
 }
 
+Camera widened_source(const FrameHeader& header, std::size_t index) {
+    const Camera camera = moved_camera(header.source, header.source_geometry, header.source_positions[index]);
+    return with_guard_band(camera, header.guard_band);
+}
+
+std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic) {
+    const bool has_layers = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
+    return static_cast<std::uint32_t>(header.source_positions.size()) * (has_layers ? 1 + header.layer_count : 1);
+}
+
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic) {
-    const bool has_pages = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
-    return with_guard_band(header.source, header.guard_band).height_px * (has_pages ? 1 + header.layer_count : 1);
+    return with_guard_band(header.source, header.guard_band).height_px * page_count(header, semantic);
 }
 
 } // namespace fieldcast

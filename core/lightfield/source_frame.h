@@ -20,6 +20,7 @@ struct StageTime {
 };
 
 inline constexpr std::uint32_t kMaxLayers = 2;
+inline constexpr std::size_t kMaxSources = 8; ///< source images of a frame
 
 /// All that a receiver needs to know about a frame besides its pixels.
 struct FrameHeader {
@@ -28,12 +29,18 @@ struct FrameHeader {
     bool cut = false;               ///< histories are void: loop wrap, teleport, scene change
     std::uint32_t seed = 0;         ///< of the channel: with noise_frame it settles all random numbers of the frame
     std::uint32_t noise_frame = 0;  ///< position in the random sequences; consecutive frames continue them
-    Camera source;                  ///< without guard band
+    Camera source;                  ///< at lattice position (0, 0), without guard band
     GuardBand guard_band;           ///< planes are the source image plus this band
+    /// Where the source images are taken from, at most kMaxSources, none twice; the geometry is that of these positions.
+    std::vector<LatticePosition> source_positions = middle_source();
+    LatticeGeometry source_geometry;
     RenderSettings settings;
     /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below the
-    /// image's in the illumination planes, which are (1 + layer_count) times as high.
+    /// images' in the illumination planes, which are (1 + layer_count) times as high.
     std::uint32_t layer_count = 0;
+    /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
+    /// (accumulate); 0: the usual way.
+    std::uint32_t still_frames = 0;
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;
@@ -46,6 +53,13 @@ struct SourceFrame {
 
     const Plane* find(PlaneSemantic semantic) const; ///< null if absent
 };
+
+/// Camera of source image `index`, guard band included. All have one size.
+Camera widened_source(const FrameHeader& header, std::size_t index);
+
+/// Planes are stacks of pages, each of the widened source's size: first what every source sees, source by source, then
+/// (illumination only) the nearest BLEND surface in front of that, source by source, then the next.
+std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic);
 
 /// Height of a plane of a source frame: the widened source's, times the pages that the semantic has.
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic);

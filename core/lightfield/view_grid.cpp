@@ -61,15 +61,22 @@ std::vector<LatticePosition> lattice_positions(const ViewGrid& grid) {
     return positions;
 }
 
+std::vector<LatticePosition> middle_source() {
+    return {kMiddleSource.begin(), kMiddleSource.end()};
+}
+
+Camera moved_camera(Camera camera, const LatticeGeometry& geometry, LatticePosition position) {
+    const glm::vec2 offset_m(position.col() * geometry.spacing_m.x, position.row() * geometry.spacing_m.y);
+    const glm::vec3 right(camera.world_from_camera[0]);
+    const glm::vec3 up(camera.world_from_camera[1]);
+    camera.world_from_camera[3] += glm::vec4(right * offset_m.x - up * offset_m.y, 0.0F);
+    camera.principal_px += offset_m * (camera.focal_px / geometry.convergence_m); // zero for parallel cameras
+    return camera;
+}
+
 Camera view_camera(const Camera& source, const LatticeGeometry& geometry, LatticePosition position, float fovy_rad,
                    std::uint32_t width_px, std::uint32_t height_px) {
-    Camera view = make_camera(source.world_from_camera, fovy_rad, width_px, height_px);
-    const glm::vec2 offset_m(position.col() * geometry.spacing_m.x, position.row() * geometry.spacing_m.y);
-    const glm::vec3 right(source.world_from_camera[0]);
-    const glm::vec3 up(source.world_from_camera[1]);
-    view.world_from_camera[3] += glm::vec4(right * offset_m.x - up * offset_m.y, 0.0F);
-    view.principal_px += offset_m * (view.focal_px / geometry.convergence_m); // zero for parallel cameras
-    return view;
+    return moved_camera(make_camera(source.world_from_camera, fovy_rad, width_px, height_px), geometry, position);
 }
 
 float disparity_px(float focal_px, float spacing_m, float depth_m, float convergence_m) {

@@ -3,6 +3,7 @@
 
 #include "core/lightfield/camera.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -24,6 +25,9 @@ struct LatticePosition {
     float col() const { return static_cast<float>(col_halves) * 0.5F; }
     auto operator<=>(const LatticePosition&) const = default;
 };
+
+inline constexpr std::array kMiddleSource{LatticePosition{}}; ///< one source, where the lattice has its origin
+std::vector<LatticePosition> middle_source();                 ///< the same
 
 /// What all views of one lattice share. Views of equal geometry, size and position are the same view.
 struct LatticeGeometry {
@@ -59,7 +63,10 @@ std::optional<ViewGrid> parse_grid(const std::string& text);
 LatticePosition lattice_position(const ViewGrid& grid, std::uint32_t row, std::uint32_t col);
 std::vector<LatticePosition> lattice_positions(const ViewGrid& grid);
 
-/// Camera of a view. `source` is the source camera without guard band; the view has the given size, and the
+/// `camera` of lattice position (0, 0), moved to `position`: parallel, with the shear that convergence asks for.
+Camera moved_camera(Camera camera, const LatticeGeometry& geometry, LatticePosition position);
+
+/// Camera of a view. `source` is the camera of position (0, 0) without guard band; the view has the given size, and the
 /// vertical field of view `fovy_rad` over its height. Implements x_source = x_target + Δcol·d (docs/lightfield.md).
 Camera view_camera(const Camera& source, const LatticeGeometry& geometry, LatticePosition position, float fovy_rad,
                    std::uint32_t width_px, std::uint32_t height_px);

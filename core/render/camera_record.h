@@ -4,6 +4,10 @@
 #include "core/lightfield/camera.h"
 #include "shaders/shared/frame.h"
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 namespace fieldcast::render {
 
 /// A camera as kernels see it.
@@ -18,6 +22,12 @@ inline shared::CameraRecord make_camera_record(const Camera& camera) {
     record.principal_y = camera.principal_px.y;
     record.size_px = camera.width_px | camera.height_px << 16;
     return record;
+}
+
+inline std::vector<shared::CameraRecord> make_camera_records(std::span<const Camera> cameras) {
+    std::vector<shared::CameraRecord> records(cameras.size());
+    std::ranges::transform(cameras, records.begin(), make_camera_record);
+    return records;
 }
 
 } // namespace fieldcast::render

@@ -11,18 +11,40 @@ namespace fieldcast::render {
 
 /// Flags of a frame's settings for kernels.
 inline std::uint32_t kernel_flags(const RenderSettings& settings) {
-    return (settings.next_event_estimation ? shared::kFlagNextEventEstimation : 0U) |
-           (settings.tone_map == ToneMap::kAces ? shared::kFlagAces : 0U);
+    return settings.tone_map == ToneMap::kAces ? shared::kFlagAces : 0U;
+}
+
+/// How paths are traced, for kernels.
+inline std::uint32_t path_bits(const RenderSettings& settings) {
+    return settings.max_bounces | settings.light_sampling.candidates << shared::kPathCandidatesShift |
+           (settings.next_event_estimation ? shared::kPathNextEventEstimation : 0U) |
+           (settings.light_sampling.each_kind ? shared::kPathEachLightKind : 0U);
+}
+
+/// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias.
+inline HoleFilling hole_filling(const FrameHeader& header) {
+    HoleFilling averaged = HoleFilling::path_traced();
+    averaged.previous_frame = true;
+    return header.still_frames > 0 ? averaged : header.settings.holes;
+}
+
+/// Least weight of a new frame in an average; 0: all frames weigh the same.
+inline float least_weight(const FrameHeader& header) {
+    return header.still_frames > 0 ? 0.0F : header.settings.temporal_alpha;
 }
 
 /// Luminance above which one indirect contribution is cut: relative to the frame's mean, which exposure brings to 0.18.
 inline float max_indirect(const RenderSettings& settings) {
     return settings.indirect_clamp * 0.18F / settings.exposure;
 }
+inline float max_indirect(const FrameHeader& header) {
+    return header.still_frames > 0 ? 0.0F : max_indirect(header.settings);
+}
 
-inline shared::ReprojectSettings reproject_settings(const ReprojectionThresholds& thresholds) {
+inline shared::ReprojectSettings reproject_settings(const FrameHeader& header) {
+    const ReprojectionThresholds& thresholds = header.settings.reprojection;
     return {thresholds.plane_footprints, thresholds.tangential_footprints, thresholds.min_normal_cos,
-            thresholds.min_weight};
+            thresholds.min_weight, static_cast<std::uint32_t>(header.source_positions.size())};
 }
 
 /// Groups of a kernel that uses lib/linear_index.glsl.

@@ -72,6 +72,7 @@ struct GridRenderer::State {
     void record_tone_map(const FrameHeader& header);
     Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
     DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
+    std::vector<glm::uvec2> download_visibility(std::size_t view) const;
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
 
     const gpu::Device& device;
@@ -94,7 +95,6 @@ struct GridRenderer::State {
     HoleCounts hole_counts;
     std::vector<Camera> view_cameras;
     std::uint32_t source_texels = 0; ///< of all pages
-    std::uint32_t page_count = 1;
     std::uint64_t view_pixels = 0; ///< over all views, padded
     std::uint64_t invalid_samples = 0;
 
@@ -104,7 +104,7 @@ struct GridRenderer::State {
     gpu::TexelView illumination_view;
     gpu::BindingSet source_set;
 
-    gpu::Buffer cameras; ///< source, views
+    gpu::Buffer cameras; ///< kMaxSources of sources, then of the views
     gpu::Buffer views;   ///< ViewRecord
     gpu::Buffer counters;
     gpu::Buffer visibility;
@@ -146,12 +146,12 @@ ViewHistory& GridRenderer::State::find_history() {
 HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, const ViewRequest& asked) {
     ViewRequest next = asked;
     HoleFiller::Batch batch{.width = asked.width_px, .height = asked.height_px};
-    batch.corners = choose_corners(header.settings.holes, next.positions);
+    batch.corners = choose_corners(hole_filling(header), next.positions);
     batch.view_count = static_cast<std::uint32_t>(next.positions.size());
     request = std::move(next);
     ViewHistory& history = find_history();
     batch.history = &history.holes;
-    batch.has_history = !header.cut && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
+    batch.has_history = !header.cut && header.still_frames != 1 && history.pose_count > 0 && history.pose_count + 1 == scene.pose_count();
     history.holes.current = 1 - history.holes.current;
     history.pose_count = scene.pose_count();
     wanted = asked.positions.size();
@@ -159,7 +159,6 @@ HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, con
 }
 
 void GridRenderer::State::resize(const SourcePlanes& source) {
-    page_count = source.page_count();
     if (source.texel_count() != source_texels) {
         source_texels = source.texel_count();
         geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_texels) * 16);
@@ -170,7 +169,7 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
         source_set.set(shared::kReprojectGeometry, geometry_view);
         source_set.set(shared::kReprojectIllumination, illumination_view);
     }
-    cameras = gpu::Buffer(device, (view_count() + 1ULL) * sizeof(shared::CameraRecord));
+    cameras = gpu::Buffer(device, (shared::kMaxSources + view_count()) * sizeof(shared::CameraRecord));
     views = gpu::Buffer(device, view_count() * sizeof(shared::ViewRecord));
     counters = gpu::Buffer(device, (shared::kCounterDiscards + 4ULL * view_count()) * 4);
     const std::uint64_t pixels = static_cast<std::uint64_t>(padded_pixels(request)) * view_count();
@@ -187,7 +186,10 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
 
 void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
     const FrameHeader& header = source.header();
-    std::vector<shared::CameraRecord> camera_records{make_camera_record(source.camera())};
+    std::vector<shared::CameraRecord> camera_records(shared::kMaxSources);
+    for (std::uint32_t i = 0; i < source.source_count(); ++i) {
+        camera_records[i] = make_camera_record(source.camera(i));
+    }
     std::vector<shared::ViewRecord> view_records;
     view_cameras.clear();
     for (const LatticePosition position : request.positions) {
@@ -205,7 +207,7 @@ void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::
 
 void GridRenderer::State::record_visibility() {
     shared::VisibilityParams params{};
-    params.cameras = cameras.address() + sizeof(shared::CameraRecord);
+    params.cameras = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
     params.visibility = visibility.address();
     params.layers = layers.address();
     params.width = request.width_px;
@@ -244,7 +246,7 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     params.width = request.width_px;
     params.height = request.height_px;
     params.view_count = view_count();
-    params.settings = reproject_settings(header.settings.reprojection);
+    params.settings = reproject_settings(header);
     recorder.stage("reproject");
     recorder.dispatch(reproject_kernel, {&scene.bindings(), &source_set}, params,
                       {gpu::groups_for(params.width, shared::kLinearGroup), params.height, params.view_count});
@@ -264,11 +266,10 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     params.width = request.width_px;
     params.height = request.height_px;
     params.samples_per_pixel = header.settings.samples_per_pixel;
-    params.max_bounces = header.settings.max_bounces;
-    params.flags = kernel_flags(header.settings);
-    params.max_indirect = max_indirect(header.settings);
-    params.page_count = page_count;
-    params.settings = reproject_settings(header.settings.reprojection);
+    params.path = path_bits(header.settings);
+    params.max_indirect = max_indirect(header);
+    params.layer_count = header.layer_count;
+    params.settings = reproject_settings(header);
     recorder.stage("layers");
     recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers}, {1, 1, 1});
     recorder.barrier();
@@ -305,6 +306,13 @@ Views GridRenderer::State::download(const FrameHeader& header, const std::vector
         result.views.push_back({request.positions[i], std::move(image), discards(counts, i)});
     }
     return result;
+}
+
+/// (instance, primitive) of each pixel.
+std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t view) const {
+    FC_ASSERT(view < wanted, "no such view");
+    const std::size_t count = static_cast<std::size_t>(request.width_px) * request.height_px;
+    return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * padded_pixels(request) * view);
 }
 
 GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
@@ -356,12 +364,15 @@ LinearView GridRenderer::linear_view(std::size_t index) const {
 }
 
 std::vector<float> GridRenderer::view_depth(std::size_t index) const {
-    const State& s = *state_;
-    FC_ASSERT(index < s.wanted, "no such view");
-    const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
-    const auto seen = gpu::read_buffer_as<glm::uvec2>(s.device, s.visibility, count,
-                                                      8ULL * padded_pixels(s.request) * index);
-    return depth_of_visibility(s.scene, s.view_cameras[index], seen);
+    return depth_of_visibility(state_->scene, state_->view_cameras.at(index), state_->download_visibility(index));
+}
+
+std::vector<std::uint32_t> GridRenderer::view_instances(std::size_t index) const {
+    std::vector<std::uint32_t> instances;
+    for (const glm::uvec2 seen : state_->download_visibility(index)) {
+        instances.push_back(seen.x); // shared::kNoInstance is scene::kNone
+    }
+    return instances;
 }
 
 std::vector<bool> GridRenderer::hole_mask(std::size_t index) const {

@@ -46,6 +46,9 @@ public:
     /// View depth (metres, infinity: nothing) of view `index` of the last render(), for tests and benchmarks.
     std::vector<float> view_depth(std::size_t index) const;
 
+    /// Instance that each pixel of view `index` of the last render() shows, scene::kNone: nothing; for benchmarks.
+    std::vector<std::uint32_t> view_instances(std::size_t index) const;
+
     /// Which pixels of view `index` of the last render() the source did not show, row-major.
     std::vector<bool> hole_mask(std::size_t index) const;
 

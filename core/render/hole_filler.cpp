@@ -81,6 +81,7 @@ void HoleFiller::reserve(std::uint32_t hole_count) {
 
 shared::HoleParams HoleFiller::make_params(const FrameHeader& header, const Targets& targets) const {
     const RenderSettings& settings = header.settings;
+    const HoleFilling holes = hole_filling(header);
     shared::HoleParams params{};
     params.frames = frame_records_.address();
     params.visibility = targets.visibility.address();
@@ -93,20 +94,20 @@ shared::HoleParams HoleFiller::make_params(const FrameHeader& header, const Targ
     params.width = batch_.width;
     params.height = batch_.height;
     params.hole_count = hole_count_;
-    params.stages = (settings.holes.previous_frame && batch_.has_history ? shared::kHolesPreviousFrame : 0U) |
-                    (settings.holes.isolated ? shared::kHolesIsolated : 0U) |
-                    (settings.holes.end_in_source ? shared::kHolesEndInSource : 0U) |
+    params.stages = (holes.previous_frame && batch_.has_history ? shared::kHolesPreviousFrame : 0U) |
+                    (holes.isolated ? shared::kHolesIsolated : 0U) |
+                    (holes.end_in_source ? shared::kHolesEndInSource : 0U) |
                     (batch_.corners.empty() ? 0U : shared::kHolesCascade);
     params.noise_frame = header.noise_frame;
     params.samples_per_pixel = settings.samples_per_pixel;
-    params.max_bounces = settings.max_bounces | kernel_flags(settings) << 16U;
-    params.max_indirect = max_indirect(settings);
-    params.alpha = settings.temporal_alpha;
+    params.path = path_bits(settings);
+    params.max_indirect = max_indirect(header);
+    params.alpha = least_weight(header);
     for (std::uint32_t i = 0; i < 4; ++i) {
         const std::uint32_t corner = i < batch_.corners.size() ? batch_.corners[i] : shared::kNoCornerView;
-        params.corner_views[static_cast<int>(i / 2)] |= corner << (16 * (i % 2));
+        params.corner_views |= corner << (8 * i);
     }
-    params.settings = reproject_settings(settings.reprojection);
+    params.settings = reproject_settings(header);
     return params;
 }
 
@@ -124,7 +125,7 @@ void HoleFiller::trace_list(gpu::Recorder& recorder, const Targets& targets, sha
 void HoleFiller::smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
                                          shared::HoleParams params) {
     const std::initializer_list<const gpu::BindingSet*> sets{&scene_.bindings(), &targets.source_set};
-    if (header.settings.holes.denoise) {
+    if (hole_filling(header).denoise) {
         recorder.stage("denoise_holes");
         recorder.dispatch(filter_, sets, params, linear_groups(hole_count_));
         recorder.barrier();

@@ -71,8 +71,7 @@ void ReferenceRenderer::accumulate(const RenderSettings& settings, std::uint32_t
     params.seed = seed;
     params.first_sample = s.samples;
     params.samples_per_pixel = settings.samples_per_pixel;
-    params.max_bounces = settings.max_bounces;
-    params.flags = kernel_flags(settings);
+    params.path = path_bits(settings);
     params.max_indirect = max_indirect(settings);
     s.recorder.stage("reference");
     s.recorder.dispatch(s.kernel, {&s.scene.bindings()}, params,

@@ -38,17 +38,23 @@ std::uint32_t scaled(std::uint32_t pixels, float factor) {
 } // namespace
 
 GuardBandChoice measure_guard_band(const gpu::Device& device, const scene::GpuScene& scene, const Camera& source,
-                                   const ViewGrid& largest) {
+                                   const ViewGrid& largest, std::span<const LatticePosition> source_positions) {
+    if (source_positions.size() != 1) {
+        return {};
+    }
+    const LatticePosition at = source_positions.front();
     const std::uint32_t height = std::min(source.height_px, kMeasureHeight);
     const float factor = static_cast<float>(source.height_px) / static_cast<float>(height);
     const auto width = std::max(1U, static_cast<std::uint32_t>(static_cast<float>(source.width_px) / factor));
-    const Camera small = make_camera(source.world_from_camera, vertical_fov(source), width, height);
+    const Camera small =
+        moved_camera(make_camera(source.world_from_camera, vertical_fov(source), width, height), largest.geometry, at);
     const float nearest_m = nearest_depth(trace_depth(device, scene, small, {}));
     if (!std::isfinite(nearest_m)) {
         return {};
     }
-    const GuardBand widest = widest_guard_band(small, largest, nearest_m);
-    GuardBandChoice choice = choose_guard_band(small, widest, trace_depth(device, scene, small, widest), largest);
+    const GuardBand widest = widest_guard_band(small, largest, nearest_m, at);
+    GuardBandChoice choice = choose_guard_band(small, widest, trace_depth(device, scene, small, widest), largest,
+                                               kGuardBandTarget, kGuardBandCap, at);
     choice.band = {scaled(choice.band.left_px, factor), scaled(choice.band.right_px, factor),
                    scaled(choice.band.top_px, factor), scaled(choice.band.bottom_px, factor)};
     return choice;

@@ -58,11 +58,12 @@ SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const 
         plane.bytes.resize(static_cast<std::size_t>(plane.width_px) * plane.height_px * 4);
         gpu::read_buffer(device_, planes_[index_of(semantic)], plane.bytes);
         if (plane.format == PlaneFormat::kRg8) { // from the low half of each word
-            for (std::size_t i = 0; i < pixel_count_; ++i) {
+            const std::size_t count = plane.bytes.size() / 4;
+            for (std::size_t i = 0; i < count; ++i) {
                 plane.bytes[2 * i] = plane.bytes[4 * i];
                 plane.bytes[2 * i + 1] = plane.bytes[4 * i + 1];
             }
-            plane.bytes.resize(static_cast<std::size_t>(pixel_count_) * 2);
+            plane.bytes.resize(count * 2);
         }
         frame.planes.push_back(std::move(plane));
     }
@@ -89,8 +90,8 @@ Decoded<bool> SourcePlanes::upload(const SourceFrame& frame) {
             gpu::write_buffer(device_, buffer, plane.bytes);
             continue;
         }
-        words.resize(pixel_count_);
-        for (std::size_t i = 0; i < pixel_count_; ++i) {
+        words.resize(plane.bytes.size() / 2);
+        for (std::size_t i = 0; i < words.size(); ++i) {
             words[i] = std::to_integer<std::uint32_t>(plane.bytes[2 * i]) |
                        std::to_integer<std::uint32_t>(plane.bytes[2 * i + 1]) << 8;
         }

@@ -18,8 +18,9 @@ inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSeman
 PlaneFormat source_format(PlaneSemantic semantic);
 
 /// A SourceFrame on the device, in wire precision: what views are made from on both sides.
-/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). With layers, every plane has 1 + layer_count
-/// pages, one after the other; of the G-buffer planes only the first page travels: who holds the scene can make them.
+/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). Every plane has all pages (lightfield's
+/// page_count()), one after the other; of the G-buffer planes those of layers do not travel: who holds the scene can make
+/// them.
 class SourcePlanes {
 public:
     explicit SourcePlanes(const gpu::Device& device);
@@ -34,8 +35,10 @@ public:
     Decoded<bool> upload(const SourceFrame& frame);
 
     const FrameHeader& header() const { return header_; }
-    Camera camera() const { return with_guard_band(header_.source, header_.guard_band); }
-    std::uint32_t page_count() const { return 1 + header_.layer_count; }
+    /// Of source image `index`, guard band included; all have one size.
+    Camera camera(std::size_t index = 0) const { return widened_source(header_, index); }
+    std::uint32_t source_count() const { return static_cast<std::uint32_t>(header_.source_positions.size()); }
+    std::uint32_t page_count() const { return source_count() * (1 + header_.layer_count); }
     std::uint32_t pixel_count() const { return pixel_count_; } ///< of one page
     std::uint32_t texel_count() const { return pixel_count_ * page_count(); }
     const gpu::Buffer& plane(PlaneSemantic semantic) const;

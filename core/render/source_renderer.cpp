@@ -3,25 +3,36 @@
 
 #include "core/render/camera_record.h"
 #include "core/render/frame_parameters.h"
+#include "core/render/illumination_filter.h"
 #include "core/render/kernels.h"
 #include "core/render/source_surfaces.h"
-#include "core/render/svgf.h"
-
-#include <optional>
 
 namespace fieldcast::render {
 
+namespace {
+
+std::vector<Camera> source_cameras(const SourcePlanes& planes) {
+    std::vector<Camera> cameras;
+    for (std::size_t i = 0; i < planes.source_count(); ++i) {
+        cameras.push_back(planes.camera(i));
+    }
+    return cameras;
+}
+
+} // namespace
+
 struct SourceRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s)
-        : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), svgf(d, s),
+        : device(d), scene(s), recorder(d), planes(d), surfaces(d, s), filter(d, s),
           trace(make_scene_kernel(d, s, KernelId::kTraceSource, sizeof(shared::TraceSourceParams))),
           pack(make_plain_kernel(d, KernelId::kPackSource, sizeof(shared::PackParams))),
-          cameras(d, 2 * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
+          cameras(d, 2 * kMaxSources * sizeof(shared::CameraRecord)), invalid_samples(d, 16) {
         recorder.fill(invalid_samples, 0);
         recorder.submit();
     }
 
     bool has_history(const FrameHeader& header) const;
+    std::uint32_t still_frames(const FrameHeader& header) const;
     void upload_cameras();
     void record_trace();
     void record_pack();
@@ -31,23 +42,35 @@ struct SourceRenderer::State {
     gpu::Recorder recorder;
     SourcePlanes planes;
     SourceSurfaces surfaces;
-    Svgf svgf;
+    IlluminationFilter filter;
     gpu::Kernel trace;
     gpu::Kernel pack;
     gpu::Buffer cameras; ///< current, previous
     gpu::Buffer invalid_samples;
-    std::optional<Camera> previous;
+    std::vector<Camera> previous; ///< of the sources of the frame before
+    FrameHeader last;             ///< header of that frame
     bool has_stored_history = false; ///< the frame before accumulated or filtered
 };
 
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
-    const Camera now = with_guard_band(header.source, header.guard_band);
-    return previous && has_stored_history && !header.cut && previous->width_px == now.width_px && previous->height_px == now.height_px;
+    const Camera now = widened_source(header, 0);
+    return has_stored_history && !header.cut && previous.size() == header.source_positions.size() &&
+           previous[0].width_px == now.width_px && previous[0].height_px == now.height_px;
+}
+
+// Frames without motion up to this one, as far as they are averaged.
+std::uint32_t SourceRenderer::State::still_frames(const FrameHeader& header) const {
+    const bool is_still = !previous.empty() && !header.cut && header.source == last.source &&
+                          header.source_positions == last.source_positions && header.guard_band == last.guard_band &&
+                          header.scene_time_ns == last.scene_time_ns && header.settings == last.settings;
+    return header.settings.accumulate && is_still ? last.still_frames + 1 : 0;
 }
 
 void SourceRenderer::State::upload_cameras() {
-    const Camera now = planes.camera();
-    const std::array records{make_camera_record(now), make_camera_record(previous.value_or(now))};
+    const std::vector<Camera> now = source_cameras(planes);
+    std::vector<shared::CameraRecord> records = make_camera_records(now);
+    const std::vector<shared::CameraRecord> before = make_camera_records(previous.size() == now.size() ? previous : now);
+    records.insert(records.end(), before.begin(), before.end());
     gpu::write_buffer(device, cameras, std::as_bytes(std::span(records)));
 }
 
@@ -55,20 +78,20 @@ void SourceRenderer::State::record_trace() {
     const FrameHeader& header = planes.header();
     const Camera camera = planes.camera();
     shared::TraceSourceParams params{};
-    params.camera = cameras.address();
+    params.cameras = cameras.address();
     params.visibility = surfaces.visibility().address();
     params.layers = surfaces.layers().address();
-    params.diffuse = svgf.noisy_diffuse().address();
-    params.specular = svgf.noisy_specular().address();
+    params.diffuse = filter.noisy_diffuse().address();
+    params.specular = filter.noisy_specular().address();
     params.invalid_samples = invalid_samples.address();
     params.width = camera.width_px;
     params.height = camera.height_px;
     params.seed = header.seed;
     params.first_sample = header.noise_frame * header.settings.samples_per_pixel;
     params.samples_per_pixel = header.settings.samples_per_pixel;
-    params.max_bounces = header.settings.max_bounces;
-    params.flags = kernel_flags(header.settings);
-    params.max_indirect = max_indirect(header.settings);
+    params.source_count = planes.source_count();
+    params.path = path_bits(header.settings);
+    params.max_indirect = max_indirect(header);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
                       {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), planes.page_count()});
@@ -77,8 +100,8 @@ void SourceRenderer::State::record_trace() {
 
 void SourceRenderer::State::record_pack() {
     shared::PackParams params{};
-    params.diffuse_in = svgf.diffuse().address();
-    params.specular_in = svgf.specular().address();
+    params.diffuse_in = filter.diffuse().address();
+    params.specular_in = filter.specular().address();
     params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
     params.pixel_count = planes.texel_count();
@@ -97,24 +120,38 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     FrameHeader timed = header;
     timed.render_times.clear();
     timed.layer_count = s.scene.has_blend() ? kMaxLayers : 0;
-    const bool has_history = s.has_history(header);
+    timed.still_frames = s.still_frames(header);
+    const bool is_still = timed.still_frames > 0;
+    const bool has_history = is_still ? timed.still_frames > 1 // a series begins with its own first frame
+                                      : s.has_history(header) && header.settings.temporal_accumulation;
     s.planes.resize(timed);
-    s.svgf.resize(s.planes.texel_count());
+    s.filter.resize(s.planes.texel_count());
     s.upload_cameras();
 
-    s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.svgf.geometry());
+    s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.filter.geometry());
     s.record_trace();
     const Camera camera = s.planes.camera();
-    s.svgf.record(s.recorder, {s.cameras.address(), s.surfaces.visibility().address(), s.surfaces.layers().address(),
-                               camera.width_px, camera.height_px, s.planes.page_count(), has_history, header.settings});
+    s.filter.record(s.recorder, {.cameras = s.cameras.address(),
+                                 .visibility = s.surfaces.visibility().address(),
+                                 .layers = s.surfaces.layers().address(),
+                                 .width = camera.width_px,
+                                 .height = camera.height_px,
+                                 .page_count = s.planes.page_count(),
+                                 .source_count = s.planes.source_count(),
+                                 .has_history = has_history,
+                                 .is_still = is_still,
+                                 .least_weight = least_weight(timed),
+                                 .number = header.noise_frame,
+                                 .settings = header.settings});
     s.record_pack();
     s.recorder.submit();
 
     append_times(s.recorder, timed.render_times);
     s.planes.resize(timed);
-    s.svgf.swap();
-    s.previous = camera;
-    s.has_stored_history = header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
+    s.filter.swap();
+    s.previous = source_cameras(s.planes);
+    s.last = timed;
+    s.has_stored_history = is_still || header.settings.temporal_accumulation || header.settings.denoiser != Denoiser::kNone;
     return s.planes;
 }
 
@@ -124,12 +161,12 @@ std::uint64_t SourceRenderer::invalid_sample_count() const {
 
 struct SurfacePlanesRenderer::State {
     State(const gpu::Device& d, const scene::GpuScene& s)
-        : device(d), recorder(d), surfaces(d, s), camera(d, sizeof(shared::CameraRecord)) {}
+        : device(d), recorder(d), surfaces(d, s), cameras(d, kMaxSources * sizeof(shared::CameraRecord)) {}
 
     const gpu::Device& device;
     gpu::Recorder recorder;
     SourceSurfaces surfaces;
-    gpu::Buffer camera;
+    gpu::Buffer cameras;
     gpu::Buffer geometry;
 };
 
@@ -144,9 +181,9 @@ void SurfacePlanesRenderer::render(SourcePlanes& planes) {
     if (s.geometry.size_bytes() < geometry_bytes) {
         s.geometry = gpu::Buffer(s.device, geometry_bytes);
     }
-    const shared::CameraRecord record = make_camera_record(planes.camera());
-    gpu::write_buffer(s.device, s.camera, std::as_bytes(std::span(&record, 1)));
-    s.surfaces.record(s.recorder, planes, s.camera.address(), s.geometry);
+    const std::vector<shared::CameraRecord> records = make_camera_records(source_cameras(planes));
+    gpu::write_buffer(s.device, s.cameras, std::as_bytes(std::span(records)));
+    s.surfaces.record(s.recorder, planes, s.cameras.address(), s.geometry);
     s.recorder.submit();
 }
 

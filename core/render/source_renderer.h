@@ -8,14 +8,14 @@
 
 namespace fieldcast::render {
 
-/// Makes SourceFrames: visibility, path tracing, temporal accumulation, SVGF, packing to wire precision.
+/// Makes SourceFrames: visibility, path tracing, temporal accumulation, denoiser, packing to wire precision.
 /// Keeps the history of one camera. Not thread-safe.
 class SourceRenderer {
 public:
     SourceRenderer(const gpu::Device& device, const scene::GpuScene& scene);
     ~SourceRenderer();
 
-    /// Renders the frame described by `header` (everything but render_times and layer_count is input) with the scene as it is posed
+    /// Renders the frame described by `header` (everything but render_times, layer_count and still_frames is input) with the scene as it is posed
     /// now. The result stays valid until the next call; its header carries the stage times.
     const SourcePlanes& render(const FrameHeader& header);
 

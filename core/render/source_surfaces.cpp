@@ -12,28 +12,28 @@ SourceSurfaces::SourceSurfaces(const gpu::Device& device, const scene::GpuScene&
       trace_(make_scene_kernel(device, scene, KernelId::kVisibility, sizeof(shared::VisibilityParams))),
       surfaces_(make_scene_kernel(device, scene, KernelId::kSourceSurfaces, sizeof(shared::SourceSurfacesParams))) {}
 
-void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t camera,
+void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
                             const gpu::Buffer& geometry) {
     const Camera widened = planes.camera();
-    const std::uint64_t padded = (static_cast<std::uint64_t>(planes.pixel_count()) + 3) / 4 * 4;
+    const std::uint64_t padded = (static_cast<std::uint64_t>(planes.pixel_count()) + 3) / 4 * 4 * planes.source_count();
     if (visibility_.size_bytes() < padded * 8) {
         visibility_ = gpu::Buffer(device_, padded * 8);
         layers_ = gpu::Buffer(device_, scene_.has_blend() ? padded * 16 : 16);
     }
     shared::VisibilityParams visible{};
-    visible.cameras = camera;
+    visible.cameras = cameras;
     visible.visibility = visibility_.address();
     visible.layers = layers_.address();
     visible.width = widened.width_px;
     visible.height = widened.height_px;
-    visible.view_count = 1;
+    visible.view_count = planes.source_count();
     recorder.stage("source_visibility");
     recorder.dispatch(trace_, {&scene_.bindings()}, visible,
-                      {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), 1});
+                      {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), visible.view_count});
     recorder.barrier();
 
     shared::SourceSurfacesParams params{};
-    params.camera = camera;
+    params.cameras = cameras;
     params.visibility = visibility_.address();
     params.layers = layers_.address();
     params.depth = planes.plane(PlaneSemantic::kDepth).address();
@@ -44,6 +44,7 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     params.width = widened.width_px;
     params.height = widened.height_px;
     params.page_count = planes.page_count();
+    params.source_count = planes.source_count();
     recorder.stage("source_surfaces");
     recorder.dispatch(surfaces_, {&scene_.bindings()}, params, linear_groups(planes.texel_count()));
     recorder.barrier();

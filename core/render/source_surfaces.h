@@ -7,15 +7,15 @@
 
 namespace fieldcast::render {
 
-/// Visibility of the source and the G-buffer planes computed from it. Used by the server for its source frames and by
+/// Visibility of the sources and the G-buffer planes computed from it. Used by the server for its source frames and by
 /// clients that rebuild the planes themselves: the same kernels, hence the same bits.
 class SourceSurfaces {
 public:
     SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// Records visibility and surfaces for all pages of `planes` (sized for its header). `camera` is the device address
-    /// of the source's CameraRecord; `geometry` a buffer of GeometryTexel.
-    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t camera, const gpu::Buffer& geometry);
+    /// Records visibility and surfaces for all pages of `planes` (sized for its header). `cameras` is the device address
+    /// of the sources' CameraRecords; `geometry` a buffer of GeometryTexel.
+    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras, const gpu::Buffer& geometry);
 
     const gpu::Buffer& visibility() const { return visibility_; }
     const gpu::Buffer& layers() const { return layers_; }

@@ -2,6 +2,7 @@
 // Cameras, grids and frame headers; convert_settings.cpp has the rest.
 #include "core/wire/convert.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -178,6 +179,49 @@ Decoded<ViewSet> from_proto(const v1::ViewSet& message) {
     return set;
 }
 
+namespace {
+
+void sources_to_proto(const FrameHeader& header, v1::SourceSet& message) {
+    for (const LatticePosition position : header.source_positions) {
+        v1::LatticePosition& entry = *message.add_positions();
+        entry.set_row_halves(position.row_halves);
+        entry.set_col_halves(position.col_halves);
+    }
+    const LatticeGeometry& geometry = header.source_geometry;
+    message.set_spacing_x_m(geometry.spacing_m.x);
+    message.set_spacing_y_m(geometry.spacing_m.y);
+    message.set_convergence_m(std::isinf(geometry.convergence_m) ? 0.0F : geometry.convergence_m);
+}
+
+Decoded<void> sources_from_proto(const v1::SourceSet& message, FrameHeader& header) {
+    constexpr int kMaxHalves = 2 * static_cast<int>(kMaxViews);
+    if (message.positions().empty() || message.positions_size() > static_cast<int>(kMaxSources)) {
+        return decode_error("header.sources: " + std::to_string(message.positions_size()) + " positions, expected 1 to 8");
+    }
+    header.source_positions.clear();
+    for (const v1::LatticePosition& entry : message.positions()) {
+        const LatticePosition position{entry.row_halves(), entry.col_halves()};
+        const bool is_near = std::abs(std::int64_t{position.row_halves}) <= kMaxHalves &&
+                             std::abs(std::int64_t{position.col_halves}) <= kMaxHalves;
+        if (!is_near || std::ranges::find(header.source_positions, position) != header.source_positions.end()) {
+            return decode_error("header.sources.positions: twice the same, or beyond 144 half steps");
+        }
+        header.source_positions.push_back(position);
+    }
+    LatticeGeometry& geometry = header.source_geometry;
+    geometry.spacing_m = {message.spacing_x_m(), message.spacing_y_m()};
+    geometry.convergence_m =
+        message.convergence_m() == 0.0F ? std::numeric_limits<float>::infinity() : message.convergence_m();
+    const bool is_spaced = geometry.spacing_m.x >= 0.0F && geometry.spacing_m.x <= kMaxPositionM &&
+                           geometry.spacing_m.y >= 0.0F && geometry.spacing_m.y <= kMaxPositionM;
+    if (!is_spaced || !(geometry.convergence_m > 0.0F)) {
+        return decode_error("header.sources: spacing must be finite and not negative, convergence above 0");
+    }
+    return {};
+}
+
+} // namespace
+
 void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     message.set_scene_time_ns(header.scene_time_ns);
     message.set_cut(header.cut);
@@ -185,8 +229,10 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     message.set_noise_frame(header.noise_frame);
     to_proto(header.source, *message.mutable_source());
     to_proto(header.guard_band, *message.mutable_guard_band());
+    sources_to_proto(header, *message.mutable_sources());
     to_proto(header.settings, *message.mutable_settings());
     message.set_layer_count(header.layer_count);
+    message.set_still_frames(header.still_frames);
     message.clear_render_times();
     for (const StageTime& stage : header.render_times) {
         v1::StageTime& entry = *message.add_render_times();
@@ -216,9 +262,15 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
         return decode_error("header.layer_count: " + std::to_string(message.layer_count()) + ", expected 0 or 2");
     }
     header.layer_count = message.layer_count();
+    header.still_frames = message.still_frames();
+    if (message.has_sources()) {
+        if (const auto read = sources_from_proto(message.sources(), header); !read) {
+            return tl::unexpected(read.error());
+        }
+    }
     const Camera widened = with_guard_band(*source, *band);
     if (!is_side(widened.width_px) || !is_side(plane_height(header, PlaneSemantic::kDiffuse))) {
-        return decode_error("header: source with guard band and layers exceeds 16384 pixels");
+        return decode_error("header: sources with guard band and layers exceed 16384 pixels");
     }
     const auto settings = from_proto(message.settings());
     if (!settings) {

@@ -2,6 +2,7 @@
 // RenderSettings and small values; convert.cpp has cameras, grids and headers.
 #include "core/wire/convert.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
@@ -123,7 +124,10 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     thresholds.set_tangential_footprints(settings.reprojection.tangential_footprints);
     thresholds.set_min_normal_cos(settings.reprojection.min_normal_cos);
     thresholds.set_min_weight(settings.reprojection.min_weight);
+    message.mutable_light_sampling()->set_candidates(settings.light_sampling.candidates);
+    message.mutable_light_sampling()->set_each_kind(settings.light_sampling.each_kind);
     to_proto(settings.holes, *message.mutable_holes());
+    message.set_accumulate(settings.accumulate);
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
@@ -141,6 +145,10 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     if (settings.max_bounces > kMaxBounces) {
         return decode_error("settings.max_bounces: at most " + std::to_string(kMaxBounces));
     }
+    if (message.light_sampling().candidates() > kMaxLightCandidates) {
+        return decode_error("settings.light_sampling.candidates: at most " + std::to_string(kMaxLightCandidates));
+    }
+    settings.light_sampling = {std::max(message.light_sampling().candidates(), 1U), message.light_sampling().each_kind()};
     settings.next_event_estimation = message.next_event_estimation();
     settings.indirect_clamp = message.indirect_clamp();
     settings.denoiser = *denoiser;
@@ -155,6 +163,7 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
         return tl::unexpected(holes.error());
     }
     settings.holes = *holes;
+    settings.accumulate = message.accumulate();
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }

@@ -43,6 +43,7 @@ void FrameRenderer::settle_lattice() {
     const bool is_node_animated = scene_->nodes[camera_node_->node].is_animated;
     info_.source_width_px = config_.width_px;
     info_.source_height_px = config_.height_px;
+    info_.source_count = static_cast<std::uint32_t>(config_.source_positions.size());
     info_.fovy_rad = camera_node_->fovy_rad;
     info_.frames_per_second = config_.frames_per_second;
     info_.camera = camera_node_->name;
@@ -64,10 +65,12 @@ void FrameRenderer::settle_guard_band() {
         fixed_camera_ = source;
     }
     info_.guard_band = config_.guard_band;
+    check_planes(source);
     if (config_.guard_band_mode == ops::GuardBandMode::kFixed) {
         return;
     }
-    const GuardBandChoice choice = render::measure_guard_band(device_, *gpu_scene_, source, info_.largest_grid);
+    const GuardBandChoice choice = render::measure_guard_band(device_, *gpu_scene_, source, info_.largest_grid,
+                                                                  config_.source_positions);
     info_.guard_band = choice.band;
     log::info("guard band settled", {{"channel", info_.name},
                                      {"left_px", choice.band.left_px},
@@ -76,6 +79,21 @@ void FrameRenderer::settle_guard_band() {
                                      {"bottom_px", choice.band.bottom_px},
                                      {"removed_percent", choice.removed_share * 100.0},
                                      {"extra_percent", choice.extra_share * 100.0}});
+}
+
+// A receiver refuses taller planes.
+void FrameRenderer::check_planes(const Camera& source) const {
+    FrameHeader header;
+    header.source = source;
+    header.guard_band = info_.guard_band;
+    header.source_positions = config_.source_positions;
+    header.layer_count = gpu_scene_->has_blend() ? kMaxLayers : 0;
+    const std::uint32_t height = plane_height(header, PlaneSemantic::kDiffuse);
+    if (height > kMaxPlaneSide * 8 / 9) { // an automatic guard band adds an eighth at most
+        throw UserError("channel " + info_.name + ": " + std::to_string(header.source_positions.size()) +
+                        " sources of this --size are " + std::to_string(height) +
+                        " rows of pixels; take fewer --sources or a smaller --size");
+    }
 }
 
 void FrameRenderer::warm_up() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/channel/frame_renderer.h"
 
+#include "core/render/reference_renderer.h"
 #include "core/render/setup.h"
 
 #include <algorithm>
@@ -73,6 +74,8 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
                         ? *fixed_camera_
                         : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
     header.guard_band = info_.guard_band;
+    header.source_positions = config_.source_positions;
+    header.source_geometry = info_.largest_grid.geometry;
     header.settings = settings_;
     return header;
 }
@@ -102,6 +105,26 @@ std::vector<RenderedViews> FrameRenderer::render_views(const render::SourcePlane
             {.formats = std::move(batch.formats), .views = grid_renderer_->render(source, batch.request)});
     }
     return rendered;
+}
+
+std::optional<image::RgbF32> FrameRenderer::path_trace(const FrameMoment& moment, LatticePosition position,
+                                                       std::uint32_t samples,
+                                                       const std::function<bool(std::uint32_t)>& progress) {
+    constexpr std::uint32_t kBatch = 4; // samples between two questions whether to stop
+    const FrameHeader header = pose(1, moment);
+    RenderSettings settings = header.settings;
+    settings.indirect_clamp = 0.0F;
+    render::ReferenceRenderer renderer(device_, *gpu_scene_);
+    renderer.start(view_camera(header.source, info_.largest_grid.geometry, position, info_.fovy_rad, config_.width_px,
+                               config_.height_px));
+    while (renderer.samples_per_pixel() < samples) {
+        if (progress(renderer.samples_per_pixel())) {
+            return std::nullopt;
+        }
+        settings.samples_per_pixel = std::min(kBatch, samples - renderer.samples_per_pixel());
+        renderer.accumulate(settings, config_.seed);
+    }
+    return image::RgbF32{config_.width_px, config_.height_px, renderer.image()};
 }
 
 std::uint64_t FrameRenderer::invalid_sample_count() const {

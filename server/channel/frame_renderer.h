@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/gpu/device.h"
+#include "core/image/image_file.h"
 #include "core/render/grid_renderer.h"
 #include "core/render/source_renderer.h"
 #include "core/scene/gpu_scene.h"
@@ -10,6 +11,7 @@
 #include "server/feed/encoded_frame.h"
 #include "server/ops/config.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -49,12 +51,19 @@ public:
 
     RenderedFrame render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand);
 
+    /// Linear radiance of one view, path traced with `samples` per pixel, nothing reused, no limits. `progress` gets the
+    /// samples so far; true: stop, and the result is empty.
+    std::optional<image::RgbF32> path_trace(const FrameMoment& moment, LatticePosition position, std::uint32_t samples,
+                                            const std::function<bool(std::uint32_t)>& progress);
+
+    float exposure() const { return settings_.exposure; }
     std::uint64_t invalid_sample_count() const; ///< must stay 0
 
 private:
     void load(const ops::ChannelChoice& channel);
     void settle_lattice();
     void settle_guard_band();
+    void check_planes(const Camera& source) const;
     void warm_up();
 
     FrameHeader pose(std::uint64_t frame_id, const FrameMoment& moment);

@@ -20,6 +20,7 @@ struct ChannelInfo {
     std::array<std::uint8_t, 32> scene_hash{}; ///< SHA-256 of `bundle`
     std::uint32_t source_width_px = 0;         ///< without guard band
     std::uint32_t source_height_px = 0;        ///< without guard band
+    std::uint32_t source_count = 1;            ///< source images, stacked in the planes
     float fovy_rad = 0.785398F;                ///< vertical, of the source without guard band
     ViewGrid largest_grid;                     ///< its geometry is the lattice of the channel
     float frames_per_second = 30.0F;           ///< at most

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/config.h"
 
+#include "core/base/error.h"
+#include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 
 #include <algorithm>
-#include <arpa/inet.h>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -17,6 +18,8 @@ using Problems = std::vector<std::string>;
 
 constexpr std::uint32_t kMaxSamples = 65536; // as the wire's RenderSettings
 constexpr std::uint32_t kMaxBounces = 256;
+constexpr std::size_t kMaxChannels = 64;
+constexpr std::size_t kMaxNameBytes = 256;     // of a camera or a device
 constexpr std::uint32_t kMaxSourceSide = 8192; // leaves room for a guard band below kMaxPlaneSide
 
 /// Adds "flag: value: what is allowed" unless `is_right`.
@@ -29,18 +32,12 @@ void expect(Problems& problems, bool is_right, const char* flag, const T& value,
     }
 }
 
-bool is_loopback(const std::string& host) {
-    in_addr four{};
-    if (inet_pton(AF_INET, host.c_str(), &four) == 1) {
-        return (ntohl(four.s_addr) >> 24) == 127;
-    }
-    return host == "localhost" || host == "[::1]";
-}
-
 void check_channels(const Config& config, Problems& problems) {
     if (config.channels.empty()) {
         problems.emplace_back("--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE");
     }
+    expect(problems, config.channels.size() <= kMaxChannels, "--channel", config.channels.size(),
+           "at most 64 channels");
     std::set<std::string> names;
     for (const ChannelChoice& channel : config.channels) {
         const bool has_good_length = !channel.name.empty() && channel.name.size() <= feed::kMaxChannelNameBytes;
@@ -64,7 +61,7 @@ void check_lattice(const Config& config, Problems& problems) {
     const float fps = config.frames_per_second;
     expect(problems, fps > 0.0F && fps <= 240.0F, "--fps", fps, "more than 0, at most 240");
     const float spacing = config.spacing_m.value_or(0.0F);
-    expect(problems, std::isfinite(spacing) && spacing >= 0.0F, "--spacing", spacing, "finite, not negative, metres");
+    expect(problems, spacing >= 0.0F && spacing <= 1000.0F, "--spacing", spacing, "0 to 1000 metres");
     expect(problems, config.lattice.convergence_m > 0.0F, "--convergence", config.lattice.convergence_m,
            "more than 0 metres, or inf");
     ViewGrid grid = config.largest_grid;
@@ -80,6 +77,8 @@ void check_rendering(const Config& config, Problems& problems) {
     const RenderSettings& settings = config.settings;
     expect(problems, settings.samples_per_pixel >= 1 && settings.samples_per_pixel <= kMaxSamples, "--spp",
            settings.samples_per_pixel, "1 to 65536");
+    expect(problems, settings.light_sampling.candidates >= 1 && settings.light_sampling.candidates <= kMaxLightCandidates,
+           "--light-candidates", settings.light_sampling.candidates, "1 to 64");
     expect(problems, settings.max_bounces <= kMaxBounces, "--bounces", settings.max_bounces, "0 to 256");
     expect(problems, settings.temporal_alpha > 0.0F && settings.temporal_alpha <= 1.0F, "--alpha",
            settings.temporal_alpha, "more than 0, at most 1");
@@ -91,6 +90,8 @@ void check_rendering(const Config& config, Problems& problems) {
         expect(problems, std::isfinite(sky.x + sky.y + sky.z) && least >= 0.0F, "--sky", least,
                "finite, not negative radiance");
     }
+    expect(problems, config.camera.size() <= kMaxNameBytes, "--camera", "too long", "at most 256 bytes");
+    expect(problems, config.device.size() <= kMaxNameBytes, "--device", "too long", "at most 256 bytes");
     const double time_s = config.fixed_time_s.value_or(0.0);
     expect(problems, time_s >= 0.0 && time_s <= 1e6, "--time", time_s, "0 to 1e6 seconds");
     expect(problems, config.loop_frames == 0 || config.clock == ClockMode::kFrames, "--frames", config.loop_frames,
@@ -100,16 +101,37 @@ void check_rendering(const Config& config, Problems& problems) {
 }
 
 void check_serving(const Config& config, Problems& problems) {
-    expect(problems, is_loopback(config.listen.host), "--listen", config.listen.host,
-           "only loopback addresses (127.0.0.1, [::1], localhost), as there is no encryption yet");
-    expect(problems, config.listen.port >= 0 && config.listen.port <= 65535, "--listen", config.listen.port,
-           "a port is 0 to 65535");
     expect(problems, config.listen.port != 0 || config.port_file.has_value(), "--listen", "port 0",
            "only together with --port-file, which tells the port");
     expect(problems, config.limits.max_sessions >= 1 && config.limits.max_sessions <= 4096, "--max-sessions",
            config.limits.max_sessions, "1 to 4096");
-    expect(problems, config.limits.max_sessions_per_peer >= 1, "--max-sessions-per-peer",
-           config.limits.max_sessions_per_peer, "at least 1");
+    expect(problems, config.limits.max_sessions_per_peer >= 1 && config.limits.max_sessions_per_peer <= 4096,
+           "--max-sessions-per-peer", config.limits.max_sessions_per_peer, "1 to 4096");
+}
+
+/// Runs `check`, which throws UserError.
+template <class Check> void expect_usable(Problems& problems, const char* flag, const Check& check) {
+    try {
+        check();
+    } catch (const UserError& problem) {
+        problems.push_back(std::string(flag) + " " + problem.what());
+    }
+}
+
+void check_access(const Config& config, Problems& problems) {
+    const access::Security& security = config.security;
+    const access::Protection protection{.has_tls = security.certificates.has_value(),
+                                        .has_tokens = security.tokens.has_value()};
+    if (const auto problem = access::listening_problem(config.listen.host, protection)) {
+        problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
+    }
+    if (security.tokens) {
+        expect_usable(problems, "--tokens", [&] { access::TokenList::read(*security.tokens); });
+    }
+    if (security.certificates) {
+        const auto now = std::chrono::system_clock::now();
+        expect_usable(problems, "--tls-cert", [&] { access::check_certificate(*security.certificates, now); });
+    }
 }
 
 } // namespace
@@ -120,6 +142,7 @@ std::vector<std::string> problems_of(const Config& config) {
     check_lattice(config, problems);
     check_rendering(config, problems);
     check_serving(config, problems);
+    check_access(config, problems);
     return problems;
 }
 

@@ -52,6 +52,7 @@ struct Config {
     ViewGrid largest_grid;           ///< rows and columns
     GuardBandMode guard_band_mode = GuardBandMode::kAuto;
     GuardBand guard_band;    ///< kFixed
+    std::vector<LatticePosition> source_positions = middle_source(); ///< views of the largest grid
     RenderSettings settings; ///< exposure: see `has_auto_exposure`
     bool has_auto_exposure = true;
     std::uint32_t seed = 1;
@@ -64,8 +65,9 @@ struct Config {
     bool has_validation = false;
 
     // Serving.
-    service::ListenAddress listen;
+    HostPort listen = service::kDefaultListen;
     std::optional<std::filesystem::path> port_file;
+    access::Security security;
     session::Limits limits;
     std::uint64_t max_channel_pixels = 2 * 72ULL * 1280 * 720; ///< views of one frame, over all clients
     log::Level log_level = log::Level::kInfo;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flag_text.h"
 
+#include "core/lightfield/sources.h"
+
 #include <array>
 #include <charconv>
 #include <optional>
@@ -104,6 +106,12 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
     } else {
         problems.push_back("--largest-grid " + text.largest_grid + ": write ROWSxCOLS, as in 6x6");
     }
+    if (auto positions = parse_sources(text.sources, config.largest_grid)) {
+        config.source_positions = std::move(*positions);
+    } else {
+        problems.push_back("--sources " + text.sources +
+                           ": middle, top-left, diagonal, triangle, corners, or views of the largest grid as in \"0,0;5,5\"");
+    }
     if (const auto metres = read_number<float>(text.convergence)) {
         config.lattice.convergence_m = *metres;
     } else {
@@ -121,13 +129,31 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
 }
 
 void read_listen(const FlagText& text, Config& config, Problems& problems) {
-    const std::size_t colon = text.listen.rfind(':');
-    const auto port = colon == std::string::npos ? std::nullopt : read_number<int>(text.listen.substr(colon + 1));
-    if (!port || colon == 0) {
-        problems.push_back("--listen " + text.listen + ": write HOST:PORT, as in 127.0.0.1:50151");
+    if (const auto address = parse_host_port(text.listen)) {
+        config.listen = *address;
+    } else {
+        problems.push_back("--listen " + text.listen + ": write HOST:PORT, as in 127.0.0.1:50151 or [::1]:50151");
+    }
+}
+
+void read_security(const FlagText& text, Config& config, Problems& problems) {
+    if (!text.tokens.empty()) {
+        config.security.tokens = text.tokens;
+    }
+    if (text.tls_cert.empty() != text.tls_key.empty()) {
+        problems.emplace_back(text.tls_key.empty() ? "--tls-cert needs --tls-key" : "--tls-key needs --tls-cert");
         return;
     }
-    config.listen = {.host = text.listen.substr(0, colon), .port = *port};
+    if (text.tls_cert.empty()) {
+        if (!text.tls_client_ca.empty()) {
+            problems.emplace_back("--tls-client-ca needs --tls-cert and --tls-key");
+        }
+        return;
+    }
+    config.security.certificates = {.certificate = text.tls_cert, .key = text.tls_key, .client_ca = std::nullopt};
+    if (!text.tls_client_ca.empty()) {
+        config.security.certificates->client_ca = text.tls_client_ca;
+    }
 }
 
 void read_holes(const FlagText& text, Config& config, Problems& problems) { // after the grid
@@ -149,6 +175,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_lattice(text, config, problems);
     read_holes(text, config, problems);
     read_listen(text, config, problems);
+    read_security(text, config, problems);
     if (!text.environment.empty()) {
         config.environment = text.environment;
     }

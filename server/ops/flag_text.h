@@ -17,6 +17,7 @@ struct FlagText {
     std::string size = "1280x720";
     std::string convergence = "inf";
     std::string largest_grid = "6x6";
+    std::string sources = "middle";
     bool lacks_next_event_estimation = false;
     std::string denoiser = "svgf+";
     std::string holes = "all";
@@ -26,6 +27,10 @@ struct FlagText {
     std::string clock = "real";
     std::string listen = "127.0.0.1:50151";
     std::string port_file;
+    std::string tls_cert;
+    std::string tls_key;
+    std::string tls_client_ca;
+    std::string tokens;
     std::string log_level = "info";
 };
 

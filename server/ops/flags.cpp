@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
 
+#include "core/base/error.h"
+#include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
+#include "server/ops/new_token.h"
 
 #include <CLI/CLI.hpp>
-#include <sstream>
+#include <algorithm>
 
 namespace fieldcast::ops {
 
@@ -15,6 +18,10 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --scene hall.glb --environment noon.exr --size 640x360 --fps 15
   fieldcast-server --channel red=a.gltf --channel blue=b.gltf --listen 127.0.0.1:0 --port-file port.txt
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
+  fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
+  fieldcast-server render --help                                                # what else it can write
+  fieldcast-server --make-token alice view
+  fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
 
 TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input.)";
 
@@ -50,6 +57,11 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--largest-grid", text.largest_grid, "ROWSxCOLS that the guard band is made for")
         ->group("Light field")
         ->capture_default_str();
+    app.add_option("--sources", text.sources,
+                   "Path traced views: middle, top-left, diagonal, triangle, corners, or views of the largest grid as in "
+                   "\"0,0;5,5\"")
+        ->group("Light field")
+        ->capture_default_str();
     app.add_option("--guard-band", text.guard_band, "auto, none, or LEFT,RIGHT,TOP,BOTTOM in pixels")
         ->group("Light field")
         ->capture_default_str();
@@ -59,7 +71,17 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     RenderSettings& settings = config.settings;
     app.add_option("--spp", settings.samples_per_pixel, "Samples per pixel")->group("Rendering")->capture_default_str();
     app.add_option("--bounces", settings.max_bounces, "Bounces at most")->group("Rendering")->capture_default_str();
+    app.add_option("--light-candidates", settings.light_sampling.candidates,
+                   "Candidates of which the best is taken as light sample")
+        ->group("Rendering")
+        ->capture_default_str();
+    app.add_flag("--each-light-kind", settings.light_sampling.each_kind,
+                 "A shadow ray for each kind of light at the first vertex instead of one for all")
+        ->group("Rendering");
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
+    app.add_flag("--accumulate", settings.accumulate,
+                 "While nothing moves, average frames without bias instead of denoising them")
+        ->group("Rendering");
     app.add_option("--denoiser", text.denoiser, "svgf+, svgf or none")->group("Rendering")->capture_default_str();
     app.add_option("--holes", text.holes,
                    "How pixels are filled that the source does not show: all, none (path traced), or a list of "
@@ -83,7 +105,8 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
 }
 
 void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
-    app.add_option("--listen", text.listen, "HOST:PORT, loopback only; port 0: any, with --port-file")
+    app.add_option("--listen", text.listen,
+                   "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
@@ -102,65 +125,174 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
         ->capture_default_str();
 }
 
-/// What is set, or has a default, as a --config file. CLI11 writes what is unset as an empty text, which is no value.
-std::string config_file(const CLI::App& app) {
-    std::istringstream lines(app.config_to_str(true, false));
-    std::string text;
-    for (std::string line; std::getline(lines, line);) {
-        text += line.ends_with("=\"\"") || line.empty() ? "" : line + '\n';
-    }
-    return text;
+void add_security_flags(CLI::App& app, FlagText& text) {
+    app.add_option("--tls-cert", text.tls_cert, "PEM file: certificate of the server and what links it to a root")
+        ->group("Security");
+    app.add_option("--tls-key", text.tls_key, "PEM file: its private key, without passphrase")->group("Security");
+    app.add_option("--tls-client-ca", text.tls_client_ca,
+                   "PEM file: clients must show a certificate that one of these has signed")
+        ->group("Security");
+    app.add_option("--tokens", text.tokens, "Who may call: lines of NAME ROLE sha256:HEX, see --make-token")
+        ->group("Security");
 }
 
-/// Parses; what CLI11 has to say, if that ends the program.
-std::optional<Invocation> parse(CLI::App& app, int argc, const char* const* argv) {
-    Invocation early;
+void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>& products) {
+    const auto add = [&](CLI::Option* option) { option->group("render")->configurable(false); };
+    add(app.add_option("--out", job.out, "Folder for the files")->capture_default_str());
+    add(app.add_option("--count", job.frame_count, "Frames to render, 1/fps apart, from a cold start")
+            ->check(CLI::Range(1U, 1U << 24U))
+            ->capture_default_str());
+    add(app.add_flag("--every-frame", job.writes_every_frame, "Write all frames, each to a folder; else the last"));
+    add(app.add_option("--reference", job.reference_samples,
+                       "Path trace every view of the last frame with so many samples, reuse nothing; also an EXR each")
+            ->check(CLI::Range(1U, 1U << 20U)));
+    add(app.add_option("--write", products, "quilt, views, contact-sheet, look-around, exr (the source's planes)")
+            ->delimiter(',')
+            ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
+            ->capture_default_str());
+}
+
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
+    return {.quilt = has("quilt"),
+            .views = has("views"),
+            .contact_sheet = has("contact-sheet"),
+            .look_around = has("look-around"),
+            .source_exr = has("exr")};
+}
+
+/// Everything that can be typed, and where it goes.
+struct CommandLine {
+    CLI::App app{"Path traces light fields and streams them to many displays.", "fieldcast-server"};
+    FlagText text;
+    Config config;
+    std::string config_file;
+    bool only_check = false;
+    bool only_print = false;
+    std::vector<std::string> new_token;
+    bool renders = false; ///< "render" came first
+    OfflineJob job;
+    std::vector<std::string> products{"quilt", "views", "exr"};
+
+    explicit CommandLine(bool is_offline = false) : renders(is_offline) {
+        app.footer(kExamples);
+        app.allow_extras(); // so that all of them can be told
+        app.set_version_flag("--version", "fieldcast-server " FIELDCAST_VERSION);
+        app.add_option("--config", config_file, "TOML file with the flags' names; flags win")->configurable(false);
+        app.add_flag("--check-config", only_check, "Validate, report all problems, exit")->configurable(false);
+        app.add_flag("--print-config", only_print, "Print what would be used, as a --config file, and exit")
+            ->configurable(false);
+        app.add_option("--make-token", new_token, "NAME ROLE: print a new token and its line for --tokens, and exit")
+            ->type_size(2)
+            ->expected(1)
+            ->configurable(false);
+        add_scene_flags(app, text, config);
+        add_image_flags(app, text, config);
+        add_render_flags(app, text, config);
+        add_serving_flags(app, text, config);
+        add_security_flags(app, text);
+        if (renders) {
+            add_offline_flags(app, job, products);
+        }
+    }
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+};
+
+/// What is wrong with the form of `arguments`; values are not looked at.
+std::vector<std::string> parse(CommandLine& line, std::vector<std::string> arguments) {
+    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+    std::vector<std::string> problems;
     try {
-        app.parse(argc, argv);
-        return std::nullopt;
-    } catch (const CLI::CallForHelp&) {
-        early.text = app.help();
+        line.app.parse(arguments);
+    } catch (const CLI::Success&) {
+        throw; // --help, --version
+    } catch (const CLI::ParseError& error) {
+        problems.emplace_back(error.what());
+    }
+    for (const std::string& extra : line.app.remaining(true)) {
+        const std::string nearest = nearest_flag(flag_name(extra), line.app);
+        problems.push_back(!extra.starts_with("-") ? extra + ": belongs to no flag"
+                           : nearest.empty()       ? extra + ": there is no such flag"
+                                                   : extra + ": there is no such flag; did you mean " + nearest + "?");
+    }
+    return problems;
+}
+
+/// Takes out of `file` what cannot be read, and says so.
+void check_each(FileArguments& file) {
+    std::erase_if(file.arguments, [&](const std::string& argument) {
+        CommandLine alone;
+        const std::vector<std::string> problems = parse(alone, {argument});
+        for (const std::string& problem : problems) {
+            const bool names_flag = problem.starts_with(flag_name(argument));
+            file.problems.push_back(
+                with_place(names_flag ? problem : flag_name(argument) + ": " + problem, file.places));
+        }
+        return !problems.empty();
+    });
+}
+
+/// What the arguments ask for, together with those of a --config file.
+Invocation read_all(const std::vector<std::string>& arguments, const CommandLine& typed) {
+    FileArguments file;
+    if (!typed.config_file.empty()) {
+        file = read_config_file(typed.config_file, typed.app);
+        check_each(file);
+    }
+    CommandLine all(typed.renders);
+    std::vector<std::string> merged(file.arguments);
+    merged.insert(merged.end(), arguments.begin(), arguments.end());
+    Invocation invocation;
+    std::vector<std::string> problems = parse(all, merged);
+    read_text(all.text, all.config, problems);
+    const std::vector<std::string> further = problems_of(all.config);
+    problems.insert(problems.end(), further.begin(), further.end());
+    invocation.problems = file.problems;
+    for (const std::string& problem : problems) {
+        invocation.problems.push_back(with_place(problem, file.places));
+    }
+    if (all.only_print) {
+        invocation.kind = Invocation::Kind::kPrint;
+        invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
+    } else if (all.only_check) {
+        invocation.kind = Invocation::Kind::kCheck;
+    } else if (all.renders) {
+        invocation.kind = Invocation::Kind::kRender;
+        invocation.job = std::move(all.job);
+        invocation.job.products = read_products(all.products);
+    }
+    invocation.config = std::move(all.config);
+    return invocation;
+}
+
+Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
+    Invocation early;
+    early.kind = Invocation::Kind::kPrint;
+    try {
+        early.problems = parse(typed, arguments);
+        if (early.problems.empty() && !typed.new_token.empty()) {
+            early.text = new_token_text(typed.new_token.at(0), typed.new_token.at(1));
+            return early;
+        }
     } catch (const CLI::CallForVersion& version) {
         early.text = version.what() + std::string("\n");
-    } catch (const CLI::ParseError& error) {
-        early.problems.emplace_back(error.what());
+        return early;
+    } catch (const CLI::Success&) {
+        early.text = typed.app.help();
+        return early;
+    } catch (const UserError& problem) {
+        early.problems.emplace_back(problem.what());
     }
-    early.kind = Invocation::Kind::kPrint;
-    return early;
+    return early.problems.empty() ? read_all(arguments, typed) : early;
 }
 
 } // namespace
 
 Invocation read_flags(int argc, const char* const* argv) {
-    Invocation invocation;
-    FlagText text;
-    bool only_check = false;
-    bool only_print = false;
-    CLI::App app("Path traces light fields and streams them to many displays.", "fieldcast-server");
-    app.footer(kExamples);
-    app.set_config("--config", "", "TOML file with the flags' names");
-    app.set_version_flag("--version", "fieldcast-server " FIELDCAST_VERSION);
-    app.add_flag("--check-config", only_check, "Validate, report all problems, exit")->configurable(false);
-    app.add_flag("--print-config", only_print, "Print what would be used, as a --config file, and exit")
-        ->configurable(false);
-    add_scene_flags(app, text, invocation.config);
-    add_image_flags(app, text, invocation.config);
-    add_render_flags(app, text, invocation.config);
-    add_serving_flags(app, text, invocation.config);
-    if (auto early = parse(app, argc, argv)) {
-        return *early;
-    }
-    read_text(text, invocation.config, invocation.problems);
-    if (invocation.problems.empty()) {
-        invocation.problems = problems_of(invocation.config);
-    }
-    if (only_print) {
-        invocation.kind = Invocation::Kind::kPrint;
-        invocation.text = config_file(app);
-    } else if (only_check) {
-        invocation.kind = Invocation::Kind::kCheck;
-    }
-    return invocation;
+    const bool renders = argc > 1 && std::string_view(argv[1]) == "render";
+    CommandLine typed(renders);
+    return read({argv + (renders ? 2 : 1), argv + argc}, typed);
 }
 
 } // namespace fieldcast::ops

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/ops/config.h"
+#include "server/ops/offline_job.h"
 
 #include <string>
 #include <vector>
@@ -12,16 +13,18 @@ namespace fieldcast::ops {
 struct Invocation {
     enum class Kind : std::uint8_t {
         kServe,
-        kPrint, ///< only print `text`: --help, --version, --print-config
+        kPrint, ///< only print `text`: --help, --version, --print-config, --make-token
         kCheck, ///< only validate
+        kRender, ///< `job`, without serving
     };
     Kind kind = Kind::kServe;
     Config config;
+    OfflineJob job;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. Touches nothing but files it checks for existence.
+/// Reads flags, or a --config file with the same names. "render" in front asks for files instead of a service. Reads files that flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

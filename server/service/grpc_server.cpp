@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/grpc_server.h"
 
+#include "core/base/error.h"
 #include "core/base/log.h"
+#include "server/access/listening_rule.h"
 #include "server/service/catalog_service.h"
+#include "server/service/credentials.h"
 #include "server/service/light_field_service.h"
+#include "server/service/transport_log.h"
 
 #include <condition_variable>
 #include <exception>
@@ -57,28 +61,51 @@ void tick_until(const std::stop_token& stop, SessionTable& sessions) {
     }
 }
 
+void send_revoked_away(SessionTable& sessions, const access::Gate& gate) {
+    const auto streams = sessions.streams_without_token(gate);
+    for (const auto& stream : streams) {
+        stream->go_away("the token of this session was revoked", Clock::now());
+    }
+    log::info("sessions without a token sent away", {{"count", streams.size()}});
+}
+
+/// A second look, after that at the configuration: nothing else stands between strangers and this server.
+void check_protection(const HostPort& address, const access::Security& security) {
+    const access::Protection protection{.has_tls = security.certificates.has_value(),
+                                        .has_tokens = security.tokens.has_value()};
+    if (const auto problem = access::listening_problem(address.host, protection)) {
+        throw UserError("--listen " + to_text(address) + ": " + *problem);
+    }
+}
+
 } // namespace
 
 struct GrpcServer::State {
-    State(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits)
-        : catalog(channels, limits), light_field(std::move(channels), limits) {}
+    State(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
+          const access::Security& security)
+        : catalog(channels, limits), light_field(std::move(channels), limits, gate),
+          watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }) {}
 
+    access::Gate gate;
     CatalogService catalog;
     LightFieldService light_field;
+    access::AccessWatch watch;
     int port = 0;
     std::unique_ptr<grpc::Server> server;
     std::jthread ticker;
 };
 
-GrpcServer::GrpcServer(const ListenAddress& address, std::vector<std::shared_ptr<feed::Feed>> channels,
-                       const session::Limits& limits)
-    : state_(std::make_unique<State>(std::move(channels), limits)) {
+GrpcServer::GrpcServer(const HostPort& address, std::vector<std::shared_ptr<feed::Feed>> channels,
+                       const session::Limits& limits, const access::Security& security) {
+    log_transport();
+    check_protection(address, security);
+    state_ = std::make_unique<State>(std::move(channels), limits, security);
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-    const std::string text = address.host + ":" + std::to_string(address.port);
+    const std::string text = to_text(address);
     grpc::ServerBuilder builder;
     set_transport_options(builder);
-    builder.AddListeningPort(text, grpc::InsecureServerCredentials(), &state_->port);
+    builder.AddListeningPort(text, make_credentials(security, state_->gate), &state_->port);
     builder.RegisterService(&state_->catalog);
     builder.RegisterService(&state_->light_field);
     state_->server = builder.BuildAndStart();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/host_port.h"
+#include "server/access/access_watch.h"
 #include "server/feed/feed.h"
 #include "server/session/limits.h"
 
@@ -11,18 +13,18 @@
 
 namespace fieldcast::service {
 
-struct ListenAddress {
-    std::string host = "127.0.0.1"; ///< a loopback address: there is no encryption
-    int port = 50151;               ///< 0: any free one
-};
+/// Port 0: any free one.
+inline const HostPort kDefaultListen{.host = "127.0.0.1", .port = 50151};
 
 /// The gRPC edge: Catalog, LightField, health and reflection. Health says SERVING from the constructor on, so make it
-/// when every channel has rendered. Heartbeats and deadlines run on a thread of its own.
+/// when every channel has rendered. Heartbeats and deadlines run on a thread of its own, another one follows changes of
+/// tokens and certificates.
 class GrpcServer {
 public:
-    /// Throws std::runtime_error if the address cannot be listened on.
-    GrpcServer(const ListenAddress& address, std::vector<std::shared_ptr<feed::Feed>> channels,
-               const session::Limits& limits);
+    /// Throws UserError if `address` has to be protected and is not, or a file of `security` is not usable, and
+    /// std::runtime_error if the address cannot be listened on.
+    GrpcServer(const HostPort& address, std::vector<std::shared_ptr<feed::Feed>> channels,
+               const session::Limits& limits, const access::Security& security = {});
     /// Cuts what is still open.
     ~GrpcServer();
 

@@ -13,8 +13,10 @@ namespace fieldcast::service {
 /// LightField.Open on raw bytes, so that encoded chunks are shared by all clients instead of being copied.
 class LightFieldService final : public v1::LightField::WithRawCallbackMethod_Open<v1::LightField::Service> {
 public:
-    LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits)
-        : channels_(std::move(channels)), limits_(limits), sessions_(limits) {}
+    /// `gate` must outlive it.
+    LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
+                      const access::Gate& gate)
+        : channels_(std::move(channels)), limits_(limits), gate_(gate), sessions_(limits) {}
 
     grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Open(grpc::CallbackServerContext* context) override;
 
@@ -23,6 +25,7 @@ public:
 private:
     const std::vector<std::shared_ptr<feed::Feed>> channels_;
     const session::Limits limits_;
+    const access::Gate& gate_;
     SessionTable sessions_;
 };
 

@@ -13,7 +13,7 @@ tl::unexpected<NoPlace> exhausted(std::string message) {
 
 } // namespace
 
-tl::expected<std::uint64_t, NoPlace> SessionTable::admit(const std::string& peer) {
+tl::expected<std::uint64_t, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
     auto state = state_.lock();
     if (!state->closed_because.empty()) {
         return tl::unexpected(NoPlace{.problem = Problem::kUnavailable, .message = state->closed_because});
@@ -27,7 +27,7 @@ tl::expected<std::uint64_t, NoPlace> SessionTable::admit(const std::string& peer
                          " sessions that one peer may have are in use");
     }
     const std::uint64_t id = state->next_id++;
-    state->places.emplace(id, Place{.peer = peer, .stream = {}});
+    state->places.emplace(id, Place{.peer = peer, .identity = identity, .stream = {}});
     return id;
 }
 
@@ -53,6 +53,18 @@ std::vector<std::shared_ptr<Stream>> SessionTable::streams() {
     auto state = state_.lock();
     for (const auto& [id, place] : state->places) {
         if (auto stream = place.stream.lock()) {
+            streams.push_back(std::move(stream));
+        }
+    }
+    return streams;
+}
+
+std::vector<std::shared_ptr<Stream>> SessionTable::streams_without_token(const access::Gate& gate) {
+    std::vector<std::shared_ptr<Stream>> streams;
+    auto state = state_.lock();
+    for (const auto& [id, place] : state->places) {
+        auto stream = gate.is_valid(place.identity) ? nullptr : place.stream.lock();
+        if (stream != nullptr) {
             streams.push_back(std::move(stream));
         }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "server/access/gate.h"
 #include "server/service/status.h"
 #include "server/service/stream.h"
 
@@ -24,8 +25,8 @@ class SessionTable {
 public:
     explicit SessionTable(const session::Limits& limits) : limits_(limits) {}
 
-    /// A place for a session of `peer`: its id, or why there is none.
-    tl::expected<std::uint64_t, NoPlace> admit(const std::string& peer);
+    /// A place for a session of `peer`, which is `identity`: its id, or why there is none.
+    tl::expected<std::uint64_t, NoPlace> admit(const std::string& peer, const access::Identity& identity);
 
     /// `stream` takes the place `id`.
     void add(std::uint64_t id, const std::shared_ptr<Stream>& stream);
@@ -35,6 +36,9 @@ public:
     void close(const std::string& reason);
 
     std::vector<std::shared_ptr<Stream>> streams();
+
+    /// Those whose identity `gate` does not know any more.
+    std::vector<std::shared_ptr<Stream>> streams_without_token(const access::Gate& gate);
     std::size_t size();
 
     /// False: there are still sessions at `deadline`.
@@ -43,6 +47,7 @@ public:
 private:
     struct Place {
         std::string peer;
+        access::Identity identity;
         std::weak_ptr<Stream> stream;
     };
     struct State {

@@ -15,6 +15,10 @@ grpc::Status to_status(Problem problem, const std::string& message) {
         return {grpc::StatusCode::RESOURCE_EXHAUSTED, message};
     case Problem::kUnavailable:
         return {grpc::StatusCode::UNAVAILABLE, message};
+    case Problem::kUnauthenticated:
+        return {grpc::StatusCode::UNAUTHENTICATED, message};
+    case Problem::kForbidden:
+        return {grpc::StatusCode::PERMISSION_DENIED, message};
     case Problem::kTooLate:
         return {grpc::StatusCode::DEADLINE_EXCEEDED, message};
     case Problem::kOurBug:

@@ -13,7 +13,7 @@ void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const fee
         plane.set_format(wire::to_proto(wire::wire_format(choice.semantic)));
         plane.set_codec(wire::to_proto(choice.encoding.codec));
         plane.set_width_px(channel.source_width_px + band.left_px + band.right_px);
-        plane.set_height_px(channel.source_height_px + band.top_px + band.bottom_px);
+        plane.set_height_px((channel.source_height_px + band.top_px + band.bottom_px) * channel.source_count);
     }
 }
 

@@ -45,7 +45,7 @@ Centre load_centre(uint index, uvec4 geometry) {
     c.depth = uintBitsToFloat(geometry.x);
     c.normal = unpack_normal(geometry.y);
     c.id = geometry.z;
-    c.depth_gradient = depth_gradient(params.camera.at[0], c.at, c.depth, c.normal);
+    c.depth_gradient = depth_gradient(params.cameras.at[source_of_page(pixel.page, params.source_count)], c.at, c.depth, c.normal);
     return c;
 }
 

@@ -32,8 +32,7 @@ Illumination trace_illumination(PathSettings settings, uint samples, UintBuffer 
 }
 
 vec3 trace_radiance(TraceListParams params, Surface s, vec3 direction, float cone_width, float cone_spread, uint seed) {
-    PathSettings settings = PathSettings(params.max_bounces, (params.flags & kFlagNextEventEstimation) != 0u,
-                                         params.max_indirect);
+    PathSettings settings = make_path_settings(params.path, params.max_indirect);
     Illumination light = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,
                                             cone_spread, seed);
     Bsdf b = make_bsdf(s, direction);

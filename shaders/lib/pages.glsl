@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages of the source (shared/frame.h): what its pixels see, and the BLEND surfaces in front of that.
+// Pages of the sources (shared/frame.h): what their pixels see, and the BLEND surfaces in front of that.
 #ifndef FIELDCAST_LIB_PAGES
 #define FIELDCAST_LIB_PAGES
+#include "lib/views.glsl"
 #include "shared/frame.h"
 
 struct PagePixel {
@@ -18,11 +19,19 @@ PagePixel locate_page_pixel(uint index, uint width, uint height) {
     return PagePixel(page, pixel, pixel - y * width, y);
 }
 
-Visibility page_visibility(VisibilityBuffer visibility, VisibilityBuffer layers, uint page, uint pixel) {
-    if (page == 0u) {
-        return visibility.at[pixel];
+uint source_of_page(uint page, uint source_count) {
+    return page % source_count;
+}
+
+// `stride`: pixels from one source to the next (lib/views.glsl).
+Visibility page_visibility(VisibilityBuffer visibility, VisibilityBuffer layers, uint page, uint source_count, uint stride,
+                           uint pixel) {
+    uint layer = page / source_count;
+    uint at = source_of_page(page, source_count) * stride + pixel;
+    if (layer == 0u) {
+        return visibility.at[at];
     }
-    return layers.at[pixel * kMaxLayers + page - 1u];
+    return layers.at[at * kMaxLayers + layer - 1u];
 }
 
 #endif

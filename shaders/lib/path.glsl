@@ -13,8 +13,15 @@
 struct PathSettings {
     uint max_bounces;
     bool next_event_estimation;
-    float max_indirect; // luminance of one indirect contribution; 0: no limit
+    uint light_candidates;
+    bool each_light_kind; // at the first vertex
+    float max_indirect;   // luminance of one indirect contribution; 0: no limit
 };
+
+PathSettings make_path_settings(uint path, float max_indirect) {
+    return PathSettings(path & 0xFFFFu, (path & kPathNextEventEstimation) != 0u, (path >> kPathCandidatesShift) & 0xFFu,
+                        (path & kPathEachLightKind) != 0u, max_indirect);
+}
 
 // Light arriving at the first surface, demodulated: reflected diffusely by diffuse_modulation = 1, specularly over
 // specular_modulation.
@@ -47,42 +54,93 @@ vec3 path_origin(Surface s, vec3 direction) {
     return offset_origin(s.position, above ? s.geometric_normal : -s.geometric_normal);
 }
 
+// Kinds of light that one sample of next event estimation stands for: part [from, to) of sample_light's `choice`.
+struct LightShare {
+    float from;
+    float to;
+};
+
+LightShare share_of_kind(SceneInfo info, uint kind) {
+    float environment = info.probability_environment;
+    float emitters = environment + info.probability_emitter;
+    return kind == 0u ? LightShare(0.0, environment)
+                      : (kind == 1u ? LightShare(environment, emitters) : LightShare(emitters, emitters + info.probability_light));
+}
+
+// A light sample chosen from `candidates` by what it would reflect if nothing blocked it, weighted against the BSDF's
+// sampling; its weight is light without the surface's reflection, zero if no candidate reflects.
+// Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice` and
+// shifted copies of one another in `u` (the R2 sequence), which leaves the mean what it is. To the power heuristic they
+// are so many samples.
+LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
+                           inout Sampler rng, out BsdfValue value) {
+    const vec2 kShift = vec2(0.7548776662, 0.5698402910);
+    float span = share.to - share.from;
+    LightSample kept = LightSample(s.normal, 0.0, vec3(0.0), 1.0);
+    value = BsdfValue(vec3(0.0), vec3(0.0), 0.0);
+    float kept_mass = 1.0;
+    float total = 0.0;
+    for (uint i = 0u; i < candidates; ++i) {
+        float stratum = (float(i) + choice) / float(candidates);
+        LightSample light = sample_light(info, s.position, s.normal, share.from + span * stratum,
+                                         fract(u + float(i) * kShift));
+        vec3 local = light.direction * b.world_from_local;
+        BsdfValue reflected = eval_bsdf(b, local);
+        // The albedo's floor: filters spread the demodulated light of dark texels to bright ones.
+        float mass = luminance(light.weight * (reflected.diffuse * (b.diffuse_modulation + 0.1) + reflected.specular));
+        if (!is_consistent(s, light.direction, local.z) || !(mass > 0.0)) {
+            continue;
+        }
+        float density = float(candidates) * light.pdf / span;
+        float mis = light.pdf == kDeltaLight ? 1.0 : power_heuristic(density, reflected.pdf);
+        light.weight *= mis * span;
+        mass *= mis * span;
+        total += mass;
+        if (total == mass || next_float(rng) * total < mass) {
+            kept = light;
+            kept_mass = mass;
+            value = reflected;
+        }
+    }
+    kept.weight *= total / (kept_mass * float(candidates));
+    return kept;
+}
+
 // Light of one next event estimation sample, without the surface's reflection; zero if it is blocked.
-vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, float choice, vec2 u, out BsdfValue value) {
-    LightSample light = sample_light(info, s.position, s.normal, choice, u);
-    vec3 local = light.direction * b.world_from_local;
-    value = eval_bsdf(b, local);
-    bool useful = is_consistent(s, light.direction, local.z) && luminance(light.weight) > 0.0 &&
-                  luminance(value.diffuse + value.specular) > 0.0;
-    if (!useful) {
+vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
+                   inout Sampler rng, out BsdfValue value) {
+    LightSample light = resample_light(info, s, b, share, candidates, choice, u, rng, value);
+    if (luminance(light.weight) <= 0.0) {
         return vec3(0.0);
     }
-    float mis = light.pdf == kDeltaLight ? 1.0 : power_heuristic(light.pdf, value.pdf);
     // From the moved origin to the very point that was sampled: a ray along the old direction could reach a near emitter
     // before its end.
     vec3 origin = path_origin(s, light.direction);
     bool is_far = light.distance_m > 1e20;
     vec3 to_light = is_far ? light.direction : s.position + light.direction * light.distance_m - origin;
     float visible = trace_transmittance(origin, to_light, is_far ? 1e30 : 0.9999);
-    return light.weight * (mis * visible);
+    return light.weight * visible;
 }
 
 // Emission met by a sampled direction, weighted against next event estimation.
-vec3 emitted_light(SceneInfo info, PathSettings settings, Surface s, vec3 direction, float distance_m, float pdf) {
+vec3 emitted_light(SceneInfo info, PathSettings settings, bool each_kind, Surface s, vec3 direction, float distance_m,
+                   float pdf) {
     if (!settings.next_event_estimation || s.emitter == kNoIndex) {
         return s.emission;
     }
     float cos_light = abs(dot(s.geometric_normal, direction));
-    float light_pdf = info.probability_emitter * pdf_emitter(s.emitter, s.area_m2, distance_m, cos_light);
+    float expected = each_kind ? 1.0 : info.probability_emitter;
+    float light_pdf = expected * float(settings.light_candidates) * pdf_emitter(s.emitter, s.area_m2, distance_m, cos_light);
     return s.emission * power_heuristic(pdf, light_pdf);
 }
 
-vec3 environment_light(SceneInfo info, PathSettings settings, vec3 normal, vec3 direction, float pdf) {
+vec3 environment_light(SceneInfo info, PathSettings settings, bool each_kind, vec3 normal, vec3 direction, float pdf) {
     vec3 radiance = environment_radiance(info, direction);
     if (!settings.next_event_estimation || info.probability_environment == 0.0) {
         return radiance;
     }
-    float light_pdf = info.probability_environment * pdf_environment(info, normal, direction);
+    float expected = each_kind ? 1.0 : info.probability_environment;
+    float light_pdf = expected * float(settings.light_candidates) * pdf_environment(info, normal, direction);
     return radiance * power_heuristic(pdf, light_pdf);
 }
 
@@ -103,17 +161,24 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
     vec3 indirect = vec3(0.0);
 
     for (uint bounce = 0u; bounce < settings.max_bounces; ++bounce) {
+        bool each_kind = settings.each_light_kind && bounce == 0u;
         vec2 choices = next_pair(rng);
         vec2 light_u = next_pair(rng);
         vec2 bsdf_u = next_pair(rng);
         if (settings.next_event_estimation) {
-            BsdfValue value;
-            vec3 light = sample_direct(info, s, b, choices.x, light_u, value);
-            if (bounce == 0u) {
-                result.diffuse += light * value.diffuse;
-                result.specular += light * value.specular / modulation;
-            } else {
-                indirect += throughput * light * (value.diffuse * b.diffuse_modulation + value.specular);
+            for (uint kind = 0u; kind < (each_kind ? 3u : 1u); ++kind) {
+                LightShare share = each_kind ? share_of_kind(info, kind) : LightShare(0.0, 1.0);
+                if (share.to - share.from < 1e-6) {
+                    continue;
+                }
+                BsdfValue value;
+                vec3 light = sample_direct(info, s, b, share, settings.light_candidates, choices.x, light_u, rng, value);
+                if (bounce == 0u) {
+                    result.diffuse += light * value.diffuse;
+                    result.specular += light * value.specular / modulation;
+                } else {
+                    indirect += throughput * light * (value.diffuse * b.diffuse_modulation + value.specular);
+                }
             }
         }
         vec3 local = sample_bsdf(b, choices.y, bsdf_u);
@@ -141,12 +206,12 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         vec3 arriving;
         bool ends = hit.instance == kNoInstance;
         if (ends) {
-            arriving = environment_light(info, settings, normal, direction, value.pdf);
+            arriving = environment_light(info, settings, each_kind, normal, direction, value.pdf);
         } else {
             cone_spread += 0.1 * sqrt(b.alpha);
             cone_width_m += cone_spread * hit.t;
             s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width_m);
-            arriving = emitted_light(info, settings, s, direction, hit.t, value.pdf);
+            arriving = emitted_light(info, settings, each_kind, s, direction, hit.t, value.pdf);
             b = make_bsdf(s, direction);
 #ifdef PATH_ENDS_IN_SOURCE
             vec3 reflected;

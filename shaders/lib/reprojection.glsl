@@ -91,4 +91,55 @@ Target make_target(Surface s, uint instance, vec3 direction, float footprint_m, 
                   params.settings.tangential_footprints * footprint_m / facing);
 }
 
+// Illumination of a surface in all sources that show it; `found` false: none does, and how near it came.
+struct Reused {
+    vec3 diffuse;
+    vec3 specular;
+    bool found;
+    uint reason;
+};
+
+// How much of what a glossy surface sends to `view` it sends to a source: the lobe that holds 75 % of GGX has a half
+// angle of about 1.73 α. Never nothing, so that one source alone always counts.
+float specular_confidence(Surface s, vec3 view, CameraRecord source) {
+    float angle_squared = 2.0 * max(0.0, 1.0 - dot(view, normalize(source.origin - s.position)));
+    float lobe = 1.73 * s.roughness * s.roughness + 1e-3;
+    return exp(-angle_squared / (2.0 * lobe * lobe)) + 1e-6;
+}
+
+// Light that `s`, seen along `direction` with pixels of `footprint_m`, reflects: layer `layer` of every source, blended by
+// the weight of the accepted pixels; specular light also by how alike source and target see the lobe.
+Reused gather_sources(CameraBuffer cameras, uint layer, Surface s, uint instance, vec3 direction, float footprint_m,
+                      float depth_m) {
+    Reused sum = Reused(vec3(0.0), vec3(0.0), false, kDiscardFrustum);
+    float diffuse_weight = 0.0;
+    float specular_weight = 0.0;
+    for (uint i = 0u; i < params.settings.source_count; ++i) {
+        CameraRecord source = cameras.at[i];
+        vec3 p = camera_project(source, s.position);
+        vec2 size = vec2(camera_size(source));
+        if (!(p.z > 0.0) || any(lessThan(p.xy, vec2(0.0))) || any(greaterThanEqual(p.xy, size))) {
+            continue;
+        }
+        float footprint = max(p.z / source.focal_px, footprint_m);
+        Target target = make_target(s, instance, direction, footprint, depth_m);
+        Gathered one = gather_around(source, layer * params.settings.source_count + i, p.xy, target);
+        sum.reason = max(sum.reason, one.reason);
+        if (one.weight > 0.0) {
+            float weight = min(one.weight, 1.0);
+            float confidence = params.settings.source_count == 1u ? 1.0 : specular_confidence(s, -direction, source);
+            sum.diffuse += one.diffuse * (weight / one.weight);
+            sum.specular += one.specular * (weight * confidence / one.weight);
+            diffuse_weight += weight;
+            specular_weight += weight * confidence;
+        }
+    }
+    sum.found = diffuse_weight > 0.0;
+    if (sum.found) {
+        sum.diffuse /= diffuse_weight;
+        sum.specular /= specular_weight;
+    }
+    return sum;
+}
+
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that the source image already knows, for paths that begin elsewhere. The including kernel has `params`
+// Light that the source images already know, for paths that begin elsewhere. The including kernel has `params`
 // (HoleParams) and binds set 1.
 #ifndef FIELDCAST_LIB_SOURCE_LIGHT
 #define FIELDCAST_LIB_SOURCE_LIGHT
@@ -17,19 +17,18 @@ bool light_in_source(Surface s, uint instance, Bsdf b, vec3 direction, float dis
     if ((params.stages & kHolesEndInSource) == 0u || !is_rough || specular_share > kMaxSpecularShare) {
         return false;
     }
-    CameraRecord source = params.frames.at[0].cameras.at[0];
-    vec3 p = camera_project(source, s.position);
-    vec2 size = vec2(camera_size(source));
-    if (!(p.z > 0.0) || any(lessThan(p.xy, vec2(0.0))) || any(greaterThanEqual(p.xy, size))) {
-        return false;
+    CameraBuffer cameras = params.frames.at[0].cameras;
+    Gathered sum = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardFrustum);
+    for (uint i = 0u; i < params.settings.source_count && sum.weight < params.settings.min_weight; ++i) {
+        CameraRecord source = cameras.at[i];
+        vec3 p = camera_project(source, s.position);
+        vec2 size = vec2(camera_size(source));
+        bool is_inside = p.z > 0.0 && all(greaterThanEqual(p.xy, vec2(0.0))) && all(lessThan(p.xy, size));
+        if (is_inside && dot(s.geometric_normal, source.origin - s.position) > 0.0) { // it sees the same side
+            vec3 from_source = normalize(s.position - source.origin);
+            sum = gather_around(source, i, p.xy, make_target(s, instance, from_source, p.z / source.focal_px, p.z));
+        }
     }
-    // The source must see the same side.
-    if (dot(s.geometric_normal, source.origin - s.position) <= 0.0) {
-        return false;
-    }
-    vec3 from_source = normalize(s.position - source.origin);
-    Target target = make_target(s, instance, from_source, p.z / source.focal_px, p.z);
-    Gathered sum = gather_around(source, 0u, p.xy, target);
     if (sum.weight < params.settings.min_weight) {
         return false;
     }

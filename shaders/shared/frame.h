@@ -41,17 +41,24 @@ struct VisibilityParams {
     uint unused;
 };
 
-// The source has pages: page 0 is what its pixels see (Visibility), pages 1 and 2 are the BLEND surfaces in front of
-// that, nearest first; only scenes with BLEND surfaces have them. Arrays over the source hold one page after the other.
+// Sources have pages (core/lightfield/source_frame.h): page layer · source_count + source. Layer 0 is what pixels see
+// (Visibility), layers 1 and 2 are the BLEND surfaces in front of that, nearest first; only scenes with BLEND surfaces
+// have them. Arrays over the sources hold one page after the other.
 const uint kMaxLayers = 2;
+const uint kMaxSources = 8; // as core/lightfield/source_frame.h
 
-const uint kFlagNextEventEstimation = 1;
 const uint kFlagTemporal = 2;
 const uint kFlagAces = 4;
+const uint kFlagKeepTaps = 8;
 
-// trace_source.comp: path traces every pixel of the source, every page.
+// How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
+const uint kPathCandidatesShift = 16;
+const uint kPathNextEventEstimation = 1u << 24;
+const uint kPathEachLightKind = 1u << 25;
+
+// trace_source.comp: path traces every pixel of the sources, every page.
 struct TraceSourceParams {
-    CameraBuffer camera;
+    CameraBuffer cameras;
     VisibilityBuffer visibility;
     VisibilityBuffer layers;
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
@@ -62,8 +69,8 @@ struct TraceSourceParams {
     uint seed;
     uint first_sample;           // number of the first sample in the pixels' sequences
     uint samples_per_pixel;
-    uint max_bounces;
-    uint flags;
+    uint source_count;
+    uint path;                   // kPath…
     float max_indirect;
 };
 
@@ -77,14 +84,13 @@ struct TraceReferenceParams {
     uint seed;
     uint first_sample;
     uint samples_per_pixel;
-    uint max_bounces;
-    uint flags;
+    uint path;                   // kPath…
     float max_indirect;          // 0: unbiased
 };
 
-// source_surfaces.comp: G-buffer planes of the source from its visibility.
+// source_surfaces.comp: G-buffer planes of the sources from their visibility.
 struct SourceSurfacesParams {
-    CameraBuffer camera;
+    CameraBuffer cameras;
     VisibilityBuffer visibility;
     VisibilityBuffer layers;
     FloatBuffer depth;    // out: wire planes
@@ -95,6 +101,7 @@ struct SourceSurfacesParams {
     uint width;
     uint height;
     uint page_count;
+    uint source_count;
 };
 
 // What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness | metallic.
@@ -105,19 +112,28 @@ struct GeometryTexel {
     uint material;
 };
 
+// Which pixels of the frame before entered a pixel's history.
+struct HistoryTaps {
+    vec2 position; // image position, pixels
+    uint accepted; // bits 0 to 3: the bilinear taps, x first; 4 to 12: the 3×3 pixels around, row by row, with weight 1
+};
+SHARED_BUFFER(HistoryTapsBuffer, HistoryTaps);
+
 // temporal.comp: blends the frame with the reprojected history. Reads set 1: kTemporal….
 struct TemporalParams {
-    CameraBuffer cameras;        // current, previous
+    CameraBuffer cameras;        // of the sources now, then as they were
     VisibilityBuffer visibility;
     VisibilityBuffer layers;
     Vec4Buffer diffuse;          // in: noisy; out: accumulated, a = variance of luminance
     Vec4Buffer specular;
     Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
     FloatBuffer history_length;  // out: frames
+    HistoryTapsBuffer taps;      // out, with kFlagKeepTaps
     uint width;
     uint height;
     uint page_count;
-    uint flags;                  // kFlagTemporal: there is a history
+    uint source_count;
+    uint flags;                  // kFlagTemporal: there is a history; kFlagKeepTaps
     float alpha;                 // least weight of the new frame in illumination
     float moments_alpha;         // … and in the moments
 };
@@ -132,12 +148,13 @@ const uint kTemporalSpecular = 7;
 
 // svgf_variance.comp, limit_history.comp and svgf_atrous.comp. Read set 1: kFilter….
 struct FilterParams {
-    CameraBuffer camera;
+    CameraBuffer cameras; // of the sources
     Vec4Buffer diffuse;  // out: rgb, a = variance
     Vec4Buffer specular;
     uint width;
     uint height;
     uint page_count;
+    uint source_count;
     uint step;           // pixels between taps
     float sigma_luminance;
     float sigma_depth;
@@ -202,11 +219,12 @@ struct ReprojectSettings {
     float tangential_footprints;
     float min_normal_cos;
     float min_weight;
+    uint source_count;
 };
 
 // reproject.comp: every pixel of every view. Reads set 1: kReproject….
 struct ReprojectParams {
-    CameraBuffer cameras;        // the source (guard band included), then the views
+    CameraBuffer cameras;        // kMaxSources (guard band included), then the views
     VisibilityBuffer visibility; // of the views
     VisibilityBuffer layers;
     Uvec2Buffer radiance;        // out: linear radiance, half floats
@@ -229,7 +247,7 @@ struct FinishListParams {
 
 // composite_layers.comp: the pixels behind BLEND surfaces. Reads set 1: kReproject….
 struct TraceListParams {
-    CameraBuffer cameras;        // the source, then the views
+    CameraBuffer cameras;        // kMaxSources, then the views
     VisibilityBuffer visibility;
     VisibilityBuffer layers;
     Uvec2Buffer radiance;
@@ -239,10 +257,9 @@ struct TraceListParams {
     uint width;
     uint height;
     uint samples_per_pixel;
-    uint max_bounces;
-    uint flags;
+    uint path;                   // kPath…
     float max_indirect;
-    uint page_count;             // of the source
+    uint layer_count;            // of the sources
     ReprojectSettings settings;
 };
 

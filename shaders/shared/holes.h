@@ -14,7 +14,7 @@ const uint kHoleBlock = 64; // words that one invocation counts
 
 // What is known of the holes of one frame. Arrays are in the order of the map's bits.
 struct HoleFrame {
-    CameraBuffer cameras; // source, views
+    CameraBuffer cameras; // kMaxSources, then the views
     UintBuffer words;     // the map
     UintBuffer first;     // number of the first hole of each word
     UintBuffer pixels;    // index over all views
@@ -40,7 +40,7 @@ const uint kHolesPreviousFrame = 1; // HoleParams::stages
 const uint kHolesIsolated = 2;
 const uint kHolesEndInSource = 4;
 const uint kHolesCascade = 8;
-const uint kNoCornerView = 0xFFFF;
+const uint kNoCornerView = 0xFF;
 
 // start_holes.comp, trace_holes.comp, cascade_holes.comp, filter_holes.comp, shade_holes.comp. They read set 1:
 // kReproject….
@@ -60,10 +60,10 @@ struct HoleParams {
     uint stages;                 // kHoles…
     uint noise_frame;
     uint samples_per_pixel;
-    uint max_bounces;            // | kFlag… << 16
+    uint path;                   // kPath…
     float max_indirect;
     float alpha;                 // least weight of the new frame
-    uvec2 corner_views;          // four indices of corner views, 16 bits each, or kNoCornerView
+    uint corner_views;           // four indices of corner views, 8 bits each, or kNoCornerView
     ReprojectSettings settings;
 };
 

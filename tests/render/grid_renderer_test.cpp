@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views made from a source against the same views path traced without reuse.
 #include "core/image/packing.h"
+#include "core/lightfield/sources.h"
 #include "core/render/setup.h"
 #include "core/scene/gltf_loader.h"
 #include "tests/render/render_test.h"
@@ -86,6 +87,34 @@ TEST_F(GridRendererTest, TheSourcesOwnViewIsTheSourceRemodulated) {
         // at one sample per pixel can be 100 times brighter), and half floats: 2^-11.
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(view.pixels[i][c], expected[c], expected[c] * 1e-3F + 2e-3F) << i;
+        }
+    }
+}
+
+TEST_F(GridRendererTest, SeveralSourcesShowMoreAndTheSameLight) {
+    Stage s = stage(point_lit_room());
+    const Camera camera = room_camera(kWidth, kHeight);
+    const ViewRequest request = grid_request(camera, 6, 6, {{kSpacing, kSpacing}});
+    FrameHeader header = plain_header(camera, 1);
+    header.settings.max_bounces = 1; // no noise
+    header.source_geometry = request.geometry;
+    std::uint32_t before = 0;
+    for (const char* sources : {"top-left", "diagonal", "corners"}) {
+        SCOPED_TRACE(sources);
+        header.source_positions = *parse_sources(sources, {6, 6, request.geometry});
+        const SourcePlanes& planes = s.source.render(header);
+        const Views views = s.grid.render(planes, request);
+        const std::uint32_t now = discarded(views);
+        EXPECT_LT(now, before == 0 ? kWidth * kHeight * 36 / 4 : before);
+        before = now;
+        for (const std::size_t index : {0UL, 14UL, 35UL}) {
+            const LinearView view = s.grid.linear_view(index);
+            s.reference.start(view_camera(camera, request.geometry, request.positions[index], vertical_fov(camera), kWidth,
+                                          kHeight));
+            s.reference.accumulate(header.settings, 1);
+            const Difference difference = compare(view.pixels, s.reference.image(), kWidth, kHeight);
+            EXPECT_LT(difference.worst_block, 1.0 / 8.0) << index; // as for one source below
+            EXPECT_LT(difference.whole, 0.006) << index;
         }
     }
 }

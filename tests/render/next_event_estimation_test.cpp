@@ -9,7 +9,7 @@ namespace {
 
 /// A scene lit by a textured sky, a double-sided emitter with a texture and a large emissive ball only, with diffuse,
 /// glossy, metallic and thin glass surfaces.
-scene::Scene mixed_scene() {
+SceneBuilder mixed_scene() {
     SceneBuilder builder;
     scene::Environment& sky = builder.environment();
     sky.width_px = 32;
@@ -39,13 +39,13 @@ scene::Scene mixed_scene() {
                 at({-0.5F, -0.5F, 0}));
     builder.add(sphere(0.5F, 32, Shading::kSmooth), builder.add_material(plastic), at({0.7F, -0.5F, 0.2F}));
     builder.add(rectangle({0.1F, -0.4F, 0.9F}, {0.4F, 0, 0}, {0, 0.5F, 0}), builder.add_material(pane));
-    return builder.scene();
+    return builder;
 }
 
 using NextEventEstimationTest = RenderTest;
 
 TEST_F(NextEventEstimationTest, DoesNotChangeTheMean) {
-    const scene::Scene scene = mixed_scene();
+    const scene::Scene scene = mixed_scene().scene();
     const Camera camera = look_at({0, 0.6F, 4}, {0, -0.3F, 0}, 0.7F, 32, 24);
     const auto render = [&](bool nee) {
         return average(
@@ -60,6 +60,52 @@ TEST_F(NextEventEstimationTest, DoesNotChangeTheMean) {
         EXPECT_LE(4.0 * error, 0.01 * without.mean[c]) << "1 % must be at least four standard errors";
         EXPECT_NEAR(with.mean[c], without.mean[c], 0.01 * without.mean[c]) << c;
     }
+}
+
+TEST_F(NextEventEstimationTest, ChoosingLightSamplesDoesNotChangeTheMean) {
+    SceneBuilder builder = mixed_scene();
+    scene::Light lamp;
+    lamp.type = scene::LightType::kPoint;
+    lamp.intensity = {1.0F, 0.6F, 0.3F};
+    builder.add_light(lamp, at({0, 2, 1}));
+    const scene::Scene& scene = builder.scene();
+    const Camera camera = look_at({0, 0.6F, 4}, {0, -0.3F, 0}, 0.7F, 32, 24);
+    const auto render = [&](LightSampling sampling) {
+        return average(path_trace(scene, camera, {.samples = 256, .renders = 8, .light_sampling = sampling}));
+    };
+    const Average plain = render(LightSampling::plain());
+    for (const LightSampling sampling : {LightSampling{1, true}, LightSampling{4, false}, LightSampling{5, true}}) {
+        const Average chosen = render(sampling);
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::hypot(plain.standard_error[c], chosen.standard_error[c]);
+            EXPECT_LE(3.0 * error, 0.005 * plain.mean[c]) << "0.5 % must be at least three standard errors";
+            EXPECT_NEAR(chosen.mean[c], plain.mean[c], 0.005 * plain.mean[c])
+                << sampling.candidates << (sampling.each_kind ? " of each kind" : "");
+        }
+    }
+}
+
+/// Many lamps of equal power, each of which reaches its own part of the floor only.
+TEST_F(NextEventEstimationTest, CandidatesLowerTheVarianceOfManyLights) {
+    SceneBuilder builder;
+    builder.add(rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, -4}), builder.add_material(diffuse(glm::vec3(0.5F))));
+    const std::uint32_t lamp = builder.add_material(emitter(glm::vec3(20.0F)));
+    for (int i = 0; i < 64; ++i) {
+        builder.add(sphere(0.05F, 8, Shading::kFlat), lamp,
+                    at({static_cast<float>(i % 8) - 3.5F, 0.4F, static_cast<float>(i / 8) - 3.5F}));
+    }
+    const Camera camera = look_at({0, 5.0F, 0.5F}, {0, 0, 0}, 0.8F, 24, 16);
+    const auto variance = [&](std::uint32_t candidates) {
+        const Estimate image = path_trace(builder.scene(), camera,
+                                          {.samples = 4, .renders = 16, .max_bounces = 1, .light_sampling = {candidates, false}});
+        double sum = 0.0;
+        for (const glm::dvec3& v : image.variance) {
+            sum += v.y;
+        }
+        return sum;
+    };
+    // One of 64 lamps gives most of a point's light: eight candidates meet it eight times as often.
+    EXPECT_LT(variance(8), 0.4 * variance(1));
 }
 
 TEST_F(NextEventEstimationTest, LowersTheVariance) {

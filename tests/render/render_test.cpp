@@ -30,6 +30,7 @@ Estimate RenderTest::path_trace(const scene::Scene& scene, const Camera& camera,
     settings.samples_per_pixel = options.samples;
     settings.max_bounces = options.max_bounces;
     settings.next_event_estimation = options.next_event_estimation;
+    settings.light_sampling = options.light_sampling;
     settings.indirect_clamp = 0.0F;
     const std::size_t count = static_cast<std::size_t>(camera.width_px) * camera.height_px;
     Estimate estimate{camera.width_px, camera.height_px, std::vector<glm::dvec3>(count),

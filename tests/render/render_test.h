@@ -34,6 +34,7 @@ struct PathTracing {
     std::uint32_t renders = 4;  ///< with different seeds
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
+    LightSampling light_sampling = LightSampling::plain();
 };
 
 /// Tests of renderers on the best device of this machine; skips without one, fails on validation messages.

@@ -187,5 +187,52 @@ TEST_F(SourceRendererTest, RebuiltSurfacePlanesAreTheSourcesBits) {
     }
 }
 
+TEST_F(SourceRendererTest, AveragesFramesWhileNothingMoves) {
+    Stage s = stage(area_lit_room());
+    const Camera camera = room_camera(32, 24);
+    ViewRequest request = grid_request(camera, 2, 2, {{0.06F, 0.06F}});
+    FrameHeader header = plain_header(camera, 1);
+    header.settings.accumulate = true;
+    header.settings.denoiser = Denoiser::kSvgfPlus;
+    header.settings.temporal_accumulation = true;
+    header.settings.indirect_clamp = 1.0F; // which would take light
+    s.reference.start(camera);
+    RenderSettings unbiased = plain_header(camera, 1024).settings;
+    s.reference.accumulate(unbiased, 99);
+    const std::vector<glm::vec3> expected = s.reference.image();
+    const auto error = [&] { // RMS difference and difference of the means, over the mean
+        const LinearView view = s.grid.linear_view(0);
+        double squared = 0.0;
+        double sum = 0.0;
+        double mean = 0.0;
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            const double difference = view.pixels[i].y - expected[i].y;
+            squared += difference * difference;
+            sum += difference;
+            mean += expected[i].y;
+        }
+        return glm::dvec2(std::sqrt(squared * static_cast<double>(expected.size())) / mean, std::abs(sum) / mean);
+    };
+    double first = 0.0;
+    for (std::uint32_t frame = 0; frame <= 256; ++frame) {
+        header.cut = frame == 0;
+        header.noise_frame = frame;
+        s.gpu_scene.pose(0, header.cut);
+        const SourcePlanes& planes = s.source.render(header);
+        EXPECT_EQ(planes.header().still_frames, frame); // the first frame does not know that nothing moves
+        s.grid.render(planes, request);
+        first = frame == 1 ? error().x : first;
+    }
+    // 256 samples have a sixteenth of one sample's error; the reference's own adds an eighth of that, wire precision
+    // (2^-7 in the worst case) the rest.
+    EXPECT_LT(error().x, first / 16.0 * 1.3 + 0.008);
+    EXPECT_LT(error().y, 0.01);
+
+    header.source.world_from_camera[3].x += 0.01F;
+    header.noise_frame = 257;
+    s.gpu_scene.pose(0, false);
+    EXPECT_EQ(s.source.render(header).header().still_frames, 0U);
+}
+
 } // namespace
 } // namespace fieldcast::render

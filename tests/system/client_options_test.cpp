@@ -33,6 +33,20 @@ TEST(Options, ReadTheCommandOfTheReadme) {
     EXPECT_FALSE(invocation.options->falls_back_to_views);
 }
 
+TEST(Options, ReadHowToReachAProtectedServer) {
+    const Invocation invocation = read({"--server", "https://host:9", "--tls-ca", "ca.pem", "--tls-cert", "c.pem",
+                                        "--tls-key", "k.pem", "--tls-name", "render1", "--token-file", "t.txt"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    const client::play::ServerOptions& server = invocation.options->play.server;
+    EXPECT_EQ(server.address, "host:9");
+    EXPECT_TRUE(server.access.uses_tls);
+    EXPECT_EQ(server.access.tls_ca, "ca.pem");
+    EXPECT_EQ(server.access.tls_certificate, "c.pem");
+    EXPECT_EQ(server.access.tls_key, "k.pem");
+    EXPECT_EQ(server.access.tls_name, "render1");
+    EXPECT_EQ(server.access.token_file, "t.txt");
+}
+
 TEST(Options, ASecondModeIsTheFallBack) {
     const Invocation invocation = read({"--mode", "scene,views"});
     ASSERT_TRUE(invocation.options);
@@ -59,10 +73,11 @@ TEST(Options, CodecsKeepTheirOrder) {
 
 TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {
     const std::vector<std::vector<const char*>> wrong{
-        {"--grid", "9x9"},  {"--grid", "x"},     {"--size", "640"},
-        {"--size", "0x5"},  {"--mode", "magic"}, {"--write", "exr"}, // needs mode scene
-        {"--fov", "180"},   {"--save", "some"},  {"--frames", "-1"},
-        {"--codec", "gif"}, {"--quality", "0"},  {"--quality", "101"}};
+        {"--grid", "9x9"},        {"--grid", "x"},    {"--size", "640"},  {"--size", "0x5"},
+        {"--mode", "magic"},      {"--write", "exr"},                                             // needs mode scene
+        {"--fov", "180"},         {"--save", "some"}, {"--frames", "-1"}, {"--tls-ca", "ca.pem"}, // needs --tls
+        {"--tls-cert", "c.pem"},                                                                  // needs --tls-key
+        {"--server", "ftp://h:1"}, {"--codec", "gif"}, {"--quality", "0"}, {"--quality", "101"}};
     for (const auto& arguments : wrong) {
         const Invocation invocation = read(arguments);
         EXPECT_FALSE(invocation.options) << arguments[0] << ' ' << arguments[1];

@@ -17,6 +17,20 @@ fieldcast_test(client_options_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/options.cpp
     DEPENDS fieldcast_client_play CLI11::CLI11)
 
+fieldcast_test(client_access_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_access_test.cpp
+    DEPENDS fieldcast_client_net)
+
+add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
+target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
+fieldcast_test(security_process_test LABELS gpu TIMEOUT 300
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/security_process_test.cpp
+    DEPENDS certificate_authority test_program)
+add_dependencies(security_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(security_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+
 fieldcast_test(roundtrip_test LABELS system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/roundtrip_test.cpp
     DEPENDS fieldcast_gpu fieldcast_image)

@@ -21,22 +21,25 @@ std::string to_string(const grpc::ByteBuffer& buffer) {
 
 /// Waits for the connection: gRPC 1.51 reads errno of `connect` after calls that may have changed it, so that now and
 /// then a connection that is merely under way counts as failed at first. Users' clients dial again.
-void prepare(grpc::ClientContext& context) {
+void prepare(grpc::ClientContext& context, const std::string& token) {
     context.set_wait_for_ready(true);
     context.set_deadline(std::chrono::system_clock::now() + kCallDeadline);
+    if (!token.empty()) {
+        context.AddMetadata("authorization", "Bearer " + token);
+    }
 }
 
 } // namespace
 
-std::shared_ptr<grpc::Channel> connect(int port) {
+std::shared_ptr<grpc::Channel> connect(int port, const std::shared_ptr<grpc::ChannelCredentials>& credentials) {
     grpc::ChannelArguments arguments;
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // a connection of its own
-    return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials(),
-                                     arguments);
+    return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), credentials, arguments);
 }
 
-OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel) : stub_(v1::LightField::NewStub(channel)) {
-    prepare(context_);
+OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token)
+    : stub_(v1::LightField::NewStub(channel)) {
+    prepare(context_, token);
     stream_ = stub_->Open(&context_);
 }
 
@@ -74,9 +77,10 @@ grpc::Status OpenCall::finish() {
     return stream_->Finish();
 }
 
-grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response) {
+grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response,
+                      const std::string& token) {
     grpc::ClientContext context;
-    prepare(context);
+    prepare(context, token);
     grpc::ByteBuffer answer;
     const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC);
     const grpc::Status status = grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer>(
@@ -85,10 +89,10 @@ grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::str
     return status;
 }
 
-grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request,
-                          std::string& response) {
+grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response,
+                          const std::string& token) {
     grpc::ClientContext context;
-    prepare(context);
+    prepare(context, token);
     const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::BIDI_STREAMING);
     using Factory = grpc::internal::ClientReaderWriterFactory<grpc::ByteBuffer, grpc::ByteBuffer>;
     const std::unique_ptr<grpc::ClientReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> stream(

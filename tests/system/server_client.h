@@ -15,12 +15,14 @@ namespace fieldcast::test {
 /// No call of a test takes longer; beyond, it fails instead of hanging.
 inline constexpr std::chrono::seconds kCallDeadline{20};
 
-std::shared_ptr<grpc::Channel> connect(int port);
+/// In plain text, or with `credentials`.
+std::shared_ptr<grpc::Channel>
+connect(int port, const std::shared_ptr<grpc::ChannelCredentials>& credentials = grpc::InsecureChannelCredentials());
 
 /// A client of LightField.Open that shows every message.
 class OpenCall {
 public:
-    explicit OpenCall(const std::shared_ptr<grpc::Channel>& channel);
+    explicit OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token = "");
 
     bool send(const v1::ClientMessage& message) { return stream_->Write(message); }
     bool configure(const v1::Configure& wanted = {});
@@ -45,10 +47,11 @@ private:
 };
 
 /// A unary call on raw bytes.
-grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response);
+grpc::Status call_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response,
+                      const std::string& token = "");
 
 /// Sends one message of any bytes on a bidirectional call, and reads one answer if there is one.
-grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request,
-                          std::string& response);
+grpc::Status exchange_raw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response,
+                          const std::string& token = "");
 
 } // namespace fieldcast::test

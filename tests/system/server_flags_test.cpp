@@ -107,16 +107,30 @@ TEST(Flags, RefusesToListenForTheWorld) {
     }
 }
 
+TEST(Flags, ReportsAccessFilesThatCannotBeUsed) {
+    EXPECT_THAT(read({"--scene", kFile, "--tls-cert", kFile}).problems,
+                Contains(HasSubstr("--tls-cert needs --tls-key")));
+    EXPECT_THAT(read({"--scene", kFile, "--tls-key", kFile}).problems,
+                Contains(HasSubstr("--tls-key needs --tls-cert")));
+    EXPECT_THAT(read({"--scene", kFile, "--tls-client-ca", kFile}).problems,
+                Contains(HasSubstr("--tls-client-ca needs")));
+    EXPECT_THAT(read({"--scene", kFile, "--tls-cert", kFile, "--tls-key", kFile}).problems,
+                Contains(HasSubstr("holds no certificate")));
+    EXPECT_THAT(read({"--scene", kFile, "--tokens", kFile}).problems, Contains(HasSubstr("CMakeLists.txt:2: ")));
+    EXPECT_THAT(read({"--scene", kFile, "--tokens", "absent.txt"}).problems,
+                Contains(HasSubstr("absent.txt: cannot be read")));
+}
+
 TEST(Flags, ReportsAllProblemsAtOnce) {
     const auto problems = read({"--scene", "/no/such.gltf", "--fps", "0", "--spp", "0", "--alpha", "2"}).problems;
     EXPECT_EQ(problems.size(), 4U);
 }
 
 TEST(Flags, ReportsTextItCannotRead) {
-    const auto problems =
-        read({"--scene", kFile, "--size", "big", "--sky", "1,2", "--exposure", "bright", "--denoiser", "magic",
-              "--holes", "deep", "--listen", "here", "--guard-band", "1,2", "--channel", "nofile", "--clock", "sun"})
-            .problems;
+    const auto problems = read({"--scene",    kFile,    "--size",  "big",  "--sky",    "1,2",  "--exposure",   "bright",
+                                "--denoiser", "magic",  "--holes", "deep", "--listen", "here", "--guard-band", "1,2",
+                                "--channel",  "nofile", "--clock", "sun"})
+                              .problems;
     EXPECT_EQ(problems.size(), 9U);
 }
 
@@ -135,20 +149,23 @@ TEST(Flags, PortZeroNeedsAPortFile) {
 
 TEST(Flags, UnknownFlagsAreProblems) {
     EXPECT_THAT(read({"--scene", kFile, "--colour"}).problems, Contains(HasSubstr("--colour")));
+    EXPECT_THAT(read({"--scene", kFile, "--max-sesions", "3"}).problems,
+                Contains(HasSubstr("did you mean --max-sessions?")));
+    EXPECT_THAT(read({"--scene", kFile, "dangling"}).problems, Contains(HasSubstr("dangling")));
 }
 
 TEST(Flags, HelpHasExamplesAndEveryGroup) {
     const Invocation help = read({"--help"});
     EXPECT_THAT(help.problems, IsEmpty());
     EXPECT_EQ(help.kind, Invocation::Kind::kPrint);
-    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:"}) {
+    for (const char* const part : {"Examples:", "Scene:", "Light field:", "Rendering:", "Serving:", "Security:"}) {
         EXPECT_THAT(help.text, HasSubstr(part));
     }
 }
 
 TEST(Flags, PrintsAConfigFileThatItReads) {
     const Invocation printed = read({"--scene", kFile, "--fps", "12", "--no-nee", "--print-config"});
-    EXPECT_THAT(printed.text, HasSubstr("fps=12"));
+    EXPECT_THAT(printed.text, HasSubstr("fps = 12\n"));
     const std::string file = testing::TempDir() + "server_flags_test.toml";
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});

@@ -103,6 +103,15 @@ TEST(ServerProcess, ChecksAConfiguration) {
     EXPECT_EQ(server.wait(), 0) << server.text();
 }
 
+TEST(ServerProcess, WrongConfigurationExitsWithTwoAndNamesThePlace) {
+    const std::string file = testing::TempDir() + "server_process_" + std::to_string(getpid()) + ".toml";
+    std::ofstream(file) << "scene = \"" << kScene << "\"\n\nspp = 0\n";
+    Process server({"--config", file, "--check-config"});
+    EXPECT_EQ(server.wait(), 2);
+    EXPECT_NE(server.text().find(file + ":3: spp 0"), std::string::npos) << server.text();
+    std::filesystem::remove(file);
+}
+
 /// A server that renders small images of the demo scene.
 class RenderingServer : public testing::Test {
 protected:
@@ -178,6 +187,19 @@ TEST_F(RenderingServer, SecondSignalStopsAtOnce) {
     server_.terminate();
     EXPECT_EQ(server_.wait(), 0) << server_.text();
     EXPECT_FALSE(call.finish().ok());
+}
+
+TEST(ServerProcess, RenderWritesALightFieldWithoutServing) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fieldcast_render_test";
+    std::filesystem::remove_all(folder);
+    Process process({"render", "--scene", kScene, "--size", "64x36", "--largest-grid", "2x3", "--sources", "diagonal",
+                     "--count", "2", "--every-frame", "--out", folder.string()});
+    EXPECT_EQ(process.wait(), 0);
+    for (const char* frame : {"frame_000000", "frame_000001"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder / frame / "view_r1_c2.png")) << frame;
+        EXPECT_TRUE(std::filesystem::exists(folder / frame / "source.exr")) << frame;
+    }
+    std::filesystem::remove_all(folder);
 }
 
 } // namespace

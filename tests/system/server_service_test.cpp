@@ -253,7 +253,7 @@ TEST(ServiceWithoutFrames, HeartbeatsComeTwiceASecond) {
 
 TEST(ServiceShutdown, CutsOpenStreams) {
     auto channel = std::make_unique<SyntheticChannel>();
-    auto server = std::make_unique<service::GrpcServer>(service::ListenAddress{.host = "127.0.0.1", .port = 0},
+    auto server = std::make_unique<service::GrpcServer>(HostPort{.host = "127.0.0.1", .port = 0},
                                                         std::vector{channel->feed()}, test_limits());
     OpenCall call(connect(server->port()));
     call.configure();

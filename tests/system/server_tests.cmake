@@ -10,8 +10,16 @@ fieldcast_test(server_session_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
     DEPENDS fieldcast_server_ops)
+find_package(OpenSSL REQUIRED)
+add_library(certificate_authority STATIC ${CMAKE_CURRENT_LIST_DIR}/certificate_authority.cpp)
+target_include_directories(certificate_authority PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(certificate_authority PRIVATE OpenSSL::Crypto GTest::gtest fieldcast_warnings)
+fieldcast_test(server_access_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_access_test.cpp
+    DEPENDS certificate_authority fieldcast_server_access)
 fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
@@ -24,6 +32,10 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
                 ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
+    fieldcast_test(server_security_test LABELS quick
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_security_test.cpp
+        DEPENDS certificate_authority server_synthetic fieldcast_server_service)
 endif()
 
 # Renders; the tests that need a device skip without one.

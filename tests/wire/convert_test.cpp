@@ -37,6 +37,21 @@ TEST(Convert, FrameHeaderSurvives) {
     EXPECT_TRUE(*defaults == FrameHeader{});
 }
 
+TEST(Convert, SourcesOfAFrameSurvive) {
+    FrameHeader header = test_header(7);
+    header.source_positions = {{-4, -4}, {6, 5}};
+    header.source_geometry = {{0.02F, 0.03F}, 2.5F};
+    v1::FrameHeader message;
+    to_proto(header, message);
+    const auto back = from_proto(message, 7);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_TRUE(*back == header);
+    message.clear_sources(); // as senders wrote before there were several
+    const auto one = from_proto(message, 7);
+    ASSERT_TRUE(one) << one.error().message;
+    EXPECT_EQ(one->source_positions, FrameHeader{}.source_positions);
+}
+
 struct HeaderDamage {
     const char* error;
     std::function<void(v1::FrameHeader&)> apply;
@@ -64,6 +79,8 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(0); }},
         {"samples_per_pixel", [](auto& m) { m.mutable_settings()->set_samples_per_pixel(65537); }},
         {"max_bounces", [](auto& m) { m.mutable_settings()->set_max_bounces(257); }},
+        {"light_sampling.candidates",
+         [](auto& m) { m.mutable_settings()->mutable_light_sampling()->set_candidates(65); }},
         {"indirect_clamp", [](auto& m) { m.mutable_settings()->set_indirect_clamp(kNan); }},
         {"temporal_alpha", [](auto& m) { m.mutable_settings()->set_temporal_alpha(1.5F); }},
         {"exposure", [](auto& m) { m.mutable_settings()->set_exposure(0.0F); }},
@@ -72,6 +89,24 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
          [](auto& m) { m.mutable_settings()->mutable_reprojection()->set_min_normal_cos(-2.0F); }},
         {"cascade_rows", [](auto& m) { m.mutable_settings()->mutable_holes()->set_cascade_rows(73); }},
         {"layer_count", [](auto& m) { m.set_layer_count(1); }},
+        {"0 positions", [](auto& m) { m.mutable_sources()->clear_positions(); }},
+        {"9 positions",
+         [](auto& m) {
+             while (m.sources().positions_size() < 9) {
+                 m.mutable_sources()->add_positions()->set_col_halves(m.sources().positions_size());
+             }
+         }},
+        {"twice", [](auto& m) { m.mutable_sources()->add_positions(); }},
+        {"144 half steps", [](auto& m) { m.mutable_sources()->mutable_positions(0)->set_row_halves(-0x7FFFFFFF - 1); }},
+        {"spacing", [](auto& m) { m.mutable_sources()->set_spacing_x_m(kNan); }},
+        {"convergence", [](auto& m) { m.mutable_sources()->set_convergence_m(-1.0F); }},
+        {"exceed 16384",
+         [](auto& m) {
+             for (int i = 1; i < 8; ++i) {
+                 m.mutable_sources()->add_positions()->set_row_halves(2 * i);
+             }
+             m.mutable_source()->set_height_px(2100);
+         }},
         {"render_times", [](auto& m) { m.mutable_render_times(0)->set_ms(std::nan("")); }},
         {"render_times", [](auto& m) { m.mutable_render_times(0)->set_stage(std::string(65, 'x')); }},
         {"render_times",

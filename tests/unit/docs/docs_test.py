@@ -48,6 +48,10 @@ class Documents(unittest.TestCase):
                    for command in sorted(promises.script_commands(read(path)) - known)]
         self.assertEqual([], unknown)
 
+    def test_every_flag_of_the_server_is_explained(self):
+        table = promises.table_flags(read("docs/operations.md"))
+        self.assertEqual(set(), promises.defined_flags(read("server/ops/flags.cpp")) - promises.GIVEN_FLAGS - table)
+
     def test_flags_exist(self):
         known = {program: promises.defined_flags("".join(map(read, files))) for program, files in FLAG_SOURCES.items()}
         unknown = [f"{path}: fieldcast-{program} {flag}" for path in documents()
@@ -67,6 +71,9 @@ class Promises(unittest.TestCase):
         script = "print_help() {\n    cat <<'END'\n  setup [--check]  text\n           more text\n  demo   x\n\nExamples:\n" \
                  "  ./fieldcast gone\nEND\n}\n"
         self.assertEqual({"setup", "demo"}, promises.help_commands(script))
+
+    def test_tables(self):
+        self.assertEqual({"--a", "--b-c"}, promises.table_flags("| `--a FILE` | x |\n`--d`\n| `--b-c` | `--e` |\n"))
 
     def test_flags(self):
         text = "build/fieldcast-server --scene a.gltf \\\n    --size 1x1   # --not-a-flag\n`fieldcast-client --grid 3x3` --other"

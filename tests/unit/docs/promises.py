@@ -15,6 +15,7 @@ HELP_COMMAND = re.compile(r"^  ([a-z][a-z-]*)\b", re.MULTILINE)
 PROGRAM_CALL = re.compile(r"fieldcast-(server|client|bench)\b([^`\n|]*)")
 FLAG = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*)")
 DEFINED_FLAG = re.compile(r"\"!?(--[a-z][a-z0-9-]*)\"")
+TABLE_FLAG = re.compile(r"^\| `(--[a-z][a-z0-9-]*)", re.MULTILINE)
 GIVEN_FLAGS = {"--help"}  # the argument parser's own
 
 
@@ -42,6 +43,11 @@ def program_flags(text):
     joined = re.sub(r"\\\n\s*", " ", text)
     return {(program, flag) for program, rest in PROGRAM_CALL.findall(joined)
             for flag in FLAG.findall(rest.split(" #")[0])}
+
+
+def table_flags(text):
+    """Flags in the first column of a table."""
+    return set(TABLE_FLAG.findall(text))
 
 
 def defined_flags(source):

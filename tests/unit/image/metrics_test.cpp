@@ -13,13 +13,6 @@ namespace {
 constexpr std::uint32_t kWidth = 48;
 constexpr std::uint32_t kHeight = 32;
 
-std::uint32_t hash_byte(std::uint32_t x, std::uint32_t y, std::uint32_t channel) {
-    std::uint32_t v = x * 73856093U ^ y * 19349663U ^ channel * 83492791U ^ 2654435761U;
-    v = (v ^ v >> 15) * 2246822519U;
-    v = (v ^ v >> 13) * 3266489917U;
-    return (v ^ v >> 16) >> 24;
-}
-
 struct Pair {
     RgbF32 reference{kWidth, kHeight, {}};
     RgbF32 image{kWidth, kHeight, {}};
@@ -36,7 +29,7 @@ Pair synthetic_pair() {
                 std::uint32_t base = (x * 4 + y * (c + 1) * 2) % 256;
                 base = (x / 8 + y / 8) % 2 == 1 ? base / 2 : base;
                 reference[static_cast<int>(c)] = static_cast<float>(base) / 256.0F;
-                image[static_cast<int>(c)] = static_cast<float>(base * 3 / 4 + hash_byte(x, y, c) / 4) / 256.0F;
+                image[static_cast<int>(c)] = static_cast<float>(base * 3 / 4 + test::hash_byte(x, y, c) / 4) / 256.0F;
             }
             pair.reference.pixels.push_back(reference);
             pair.image.pixels.push_back(image);

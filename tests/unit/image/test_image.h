@@ -51,6 +51,14 @@ private:
     std::filesystem::path path_;
 };
 
+/// A number in 0 … 255 that looks random, the same on every machine.
+inline std::uint32_t hash_byte(std::uint32_t x, std::uint32_t y, std::uint32_t channel) {
+    std::uint32_t v = x * 73856093U ^ y * 19349663U ^ channel * 83492791U ^ 2654435761U;
+    v = (v ^ v >> 15) * 2246822519U;
+    v = (v ^ v >> 13) * 3266489917U;
+    return (v ^ v >> 16) >> 24;
+}
+
 /// A kRgb8 plane of one colour.
 inline Plane flat_plane(std::uint32_t width_px, std::uint32_t height_px, std::uint8_t r, std::uint8_t g,
                         std::uint8_t b) {

@@ -32,7 +32,7 @@ LIBRARIES = {
     "nlohmann/": ("core/scene", "bench", "server/ops", "client"),
     "embree": ("core/scene", "bench"),
     "meshoptimizer": ("core/scene",),
-    "openssl/": ("core/scene",),
+    "openssl/": ("core/scene", "server/access"),
     "toml": ("core/base",),
     "spdlog/": ("core/base",),
     "grpc": ("server/service", "client/net"),

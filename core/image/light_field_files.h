@@ -6,10 +6,10 @@
 
 #include <filesystem>
 
-namespace fieldcast::client::sink {
+namespace fieldcast::image {
 
 /// Which files are made of a picture.
-struct Products {
+struct LightFieldProducts {
     bool quilt = true;          ///< quilt_qs{cols}x{rows}a{aspect}.png, view 0 bottom left
     bool views = true;          ///< view_r{row}_c{col}.png, row 0 on top
     bool contact_sheet = false; ///< contact_sheet.png, all views as the grid has them, with gaps
@@ -18,7 +18,7 @@ struct Products {
 };
 
 /// One light field: the views of `grid`, row-major, all of one size.
-struct Picture {
+struct LightFieldPicture {
     const ViewGrid& grid;
     const Views& views;
     const SourceFrame* source; ///< null: there is no source.exr
@@ -26,6 +26,6 @@ struct Picture {
 
 /// Writes the products into `folder`, which is created. Every file appears complete or not at all.
 /// Throws std::system_error.
-void write_picture(const std::filesystem::path& folder, const Picture& picture, const Products& products);
+void write_light_field(const std::filesystem::path& folder, const LightFieldPicture& picture, const LightFieldProducts& products);
 
-} // namespace fieldcast::client::sink
+} // namespace fieldcast::image

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Adds FLIP to a result of `fieldcast-bench quality --out FOLDER`, and checks its RMSE and SSIM with scikit-image.
+
+FLIP is a difference between images as people alternate between them: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström,
+Fairchild. FLIP: A Difference Evaluator for Alternating Images. HPG 2020. 0 is no difference, 1 the largest. The viewer is
+assumed to see 67 pixels per degree, 0.7 m from a display of 3840 pixels and 0.7 m.
+
+Packages: requirements.txt. `./fieldcast bench flip FOLDER` installs them into .cache/bench-python and runs this.
+"""
+import argparse
+import csv
+import io
+import json
+import os
+import pathlib
+import sys
+import tempfile
+import time
+
+import numpy
+
+PIXELS_PER_DEGREE = 67.0
+# The program computes in double precision from single precision pixels; here the sRGB curve is evaluated in double
+# precision, which differs from the program's by 1e-7 per pixel at most.
+RMSE_TOLERANCE = 1e-6
+SSIM_TOLERANCE = 1e-5
+
+
+def read_exr(path):
+    """Linear RGB, height x width x 3, single precision."""
+    import OpenEXR
+
+    with OpenEXR.File(str(path)) as file:
+        channels = file.channels()
+        if "RGB" in channels:
+            return numpy.asarray(channels["RGB"].pixels, numpy.float32)
+        return numpy.stack([numpy.asarray(channels[name].pixels, numpy.float32) for name in "RGB"], -1)
+
+
+def display(linear, exposure):
+    """clamp(exposure * linear, 0, 1) through the sRGB curve (IEC 61966-2-1), as the program shows pictures."""
+    x = numpy.clip(linear.astype(numpy.float64) * exposure, 0.0, 1.0)
+    return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * numpy.power(x, 1.0 / 2.4) - 0.055)
+
+
+def rmse(image, reference):
+    return float(numpy.sqrt(numpy.mean((image - reference) ** 2)))
+
+
+def ssim(image, reference):
+    """Of the Rec. 709 luma, with the parameters of Wang et al. 2004."""
+    from skimage.metrics import structural_similarity
+
+    luma = numpy.array([0.2126, 0.7152, 0.0722])
+    return float(structural_similarity(image @ luma, reference @ luma, gaussian_weights=True, sigma=1.5,
+                                       use_sample_covariance=False, data_range=1.0))
+
+
+def flip(image, reference):
+    """Mean LDR-FLIP of display-referred images."""
+    import flip_evaluator
+
+    _, mean, _ = flip_evaluator.evaluate(reference.astype(numpy.float32), image.astype(numpy.float32), "LDR",
+                                         inputsRGB=True, applyMagma=False, computeMeanError=True,
+                                         parameters={"ppd": PIXELS_PER_DEGREE})
+    return float(mean)
+
+
+def disagreements(picture, image, reference):
+    """How the numbers of the program differ from scikit-image's, as texts."""
+    found = []
+    for name, ours, tolerance in (("rmse", rmse, RMSE_TOLERANCE), ("ssim", ssim, SSIM_TOLERANCE)):
+        expected = ours(image, reference)
+        if not abs(picture[name] - expected) <= tolerance:
+            found.append(f"{picture['file']}: {name} is {picture[name]:.8f}, scikit-image says {expected:.8f}")
+    return found
+
+
+def replace_file(path, text):
+    """Writes a file that appears complete or not at all."""
+    handle, part = tempfile.mkstemp(dir=path.parent or ".", prefix="." + path.name)
+    with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+        file.write(text)
+    os.chmod(part, 0o644)
+    os.replace(part, path)
+
+
+def show_progress(done, total, began):
+    left = (time.monotonic() - began) / done * (total - done)
+    end = "\n" if done == total else ""
+    if sys.stderr.isatty():
+        print(f"\rFLIP: {100 * done // total} %, {left / 60:.0f} min left   ", end=end, file=sys.stderr, flush=True)
+    elif done == total:
+        print(f"FLIP: {total} pictures", file=sys.stderr)
+
+
+def evaluate(folder, result):
+    """Adds "flip" to every picture; returns where the program and scikit-image disagree."""
+    found = []
+    references = {}
+    began = time.monotonic()
+    for done, picture in enumerate(result["pictures"], 1):
+        name = picture["reference"]
+        if name not in references:
+            references[name] = display(read_exr(folder / f"{name}.exr"), result["exposure"])
+        image = display(read_exr(folder / f"{picture['file']}.exr"), result["exposure"])
+        found += disagreements(picture, image, references[name])
+        picture["flip"] = flip(image, references[name])
+        show_progress(done, len(result["pictures"]), began)
+    return found
+
+
+def add_means(result):
+    """Adds "flip" to every row of the table: the mean over its pictures."""
+    for name, row in result["rows"].items():
+        row["flip"] = float(numpy.mean([p["flip"] for p in result["pictures"] if p["input"] == name]))
+
+
+def fill_csv(text, result):
+    """The table with its flip column filled in lines of this result: those of the same command, scene and input."""
+    table = list(csv.DictReader(io.StringIO(text)))
+    if not table or "flip" not in table[0]:
+        raise ValueError("no column flip: expected a table of `fieldcast-bench quality --csv`")
+    for line in table:
+        if line["command"] == result["command"] and line["scene"] == result["scene"] and line["input"] in result["rows"]:
+            line["flip"] = f"{result['rows'][line['input']]['flip']:.6g}"
+    out = io.StringIO()
+    writer = csv.DictWriter(out, table[0].keys(), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(table)
+    return out.getvalue()
+
+
+def print_table(rows):
+    print(f"{'input':<14}{'RMSE':>10}{'SSIM':>10}{'FLIP':>10}")
+    for name, row in rows.items():
+        print(f"{name:<14}{row['rmse']:>10.4f}{row['ssim']:>10.4f}{row['flip']:>10.4f}")
+
+
+def run(arguments):
+    file = arguments.folder / "quality.json"
+    result = json.loads(file.read_text(encoding="utf-8"))
+    problems = evaluate(arguments.folder, result)
+    add_means(result)
+    print_table(result["rows"])
+    replace_file(file, json.dumps(result, indent=2, ensure_ascii=False) + "\n")
+    if arguments.csv:
+        replace_file(arguments.csv, fill_csv(arguments.csv.read_text(encoding="utf-8"), result))
+    if problems:
+        print("\n".join(problems[:10]), file=sys.stderr)
+        print(f"fieldcast: {len(problems)} numbers are not those of scikit-image", file=sys.stderr)
+        return 1
+    print(f"RMSE and SSIM of {len(result['pictures'])} pictures agree with scikit-image")
+    return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./fieldcast bench flip", description=__doc__.split("\n\n")[0],
+                                     epilog="Writes the numbers into FOLDER/quality.json.")
+    parser.add_argument("folder", type=pathlib.Path, help="what `quality --out FOLDER` wrote")
+    parser.add_argument("--csv", type=pathlib.Path, help="also fill the flip column of this table of `quality --csv`")
+    try:
+        return run(parser.parse_args())
+    except (OSError, ValueError, KeyError) as error:
+        print(f"./fieldcast bench flip: {error}: expected a folder that `quality --out` wrote", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\ninterrupted: nothing was written", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

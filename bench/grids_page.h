@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/report/page.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fieldcast::bench {
+
+/// The report of a result of `grids`.
+report::Page grids_page(const nlohmann::ordered_json& result);
+
+} // namespace fieldcast::bench

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/protocol_options.h"
+
+namespace fieldcast::bench {
+
+void add_protocol_options(CLI::App& command, ProtocolOptions& options) {
+    command.add_option("--scene", options.scene, describe_scene_option())->capture_default_str();
+    command.add_option("--protocol", options.protocol, "reduced (two processor cores) or full (a GPU)")
+        ->capture_default_str();
+    command.add_option("--size", options.size, "size of source and views; default: the protocol's");
+    command.add_option("--spp", options.reference_samples, "samples of the references; default: the protocol's")
+        ->check(CLI::Range(1, 1 << 20));
+    command.add_option("--references", options.references, "folder of the references, which are kept")
+        ->capture_default_str();
+    command.add_option("--device", options.device, "part of the Vulkan device's name");
+}
+
+Protocol chosen_protocol(const ProtocolOptions& options) {
+    Protocol protocol = find_protocol(options.protocol);
+    if (!options.size.empty()) {
+        protocol.size = parse_size("--size", options.size);
+    }
+    if (options.reference_samples > 0) {
+        protocol.reference_samples = options.reference_samples;
+    }
+    return protocol;
+}
+
+std::string describe(const Protocol& protocol) {
+    return protocol.name + " protocol: " + std::to_string(protocol.size.width_px) + "x" +
+           std::to_string(protocol.size.height_px) + ", " + std::to_string(protocol.frames.size()) + " frames, " +
+           std::to_string(protocol.views.size()) + " views of 6x6, references of " +
+           std::to_string(protocol.reference_samples) + " samples";
+}
+
+} // namespace fieldcast::bench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/benchmark_scene.h"
+#include "bench/protocol.h"
+
+#include <CLI/CLI.hpp>
+
+namespace fieldcast::bench {
+
+/// What all commands have in common that compare views with references.
+struct ProtocolOptions {
+    std::string scene = "atelier";
+    std::string protocol = "reduced";
+    std::string size; ///< empty: the protocol's
+    std::string device;
+    std::string references = ".cache/references";
+    std::uint32_t reference_samples = 0; ///< 0: the protocol's
+};
+
+void add_protocol_options(CLI::App& command, ProtocolOptions& options);
+
+/// The protocol with what the command line says otherwise. Throws UserError.
+Protocol chosen_protocol(const ProtocolOptions& options);
+
+/// One line for people.
+std::string describe(const Protocol& protocol);
+
+} // namespace fieldcast::bench

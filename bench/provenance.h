@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/device.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fieldcast::bench {
+
+/// What every result names, so that numbers can be told apart later: processor, device with driver, commit ("-dirty" if
+/// the tree had changes when it was built), command line, UTC time.
+nlohmann::ordered_json provenance(const gpu::Device& device);
+
+} // namespace fieldcast::bench

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/named_picture.h"
+#include "bench/picture_id.h"
+#include "bench/report/page.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fieldcast::bench {
+
+/// One picture as every row made it, and its reference.
+struct ShownPictures {
+    PictureId id;
+    std::vector<NamedPicture> pictures;
+};
+
+/// The report of a result of `quality`. Without pictures it has none.
+report::Page quality_page(const nlohmann::ordered_json& result, const ShownPictures& shown);
+
+} // namespace fieldcast::bench

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/rate_limit.h"
+
+#include <algorithm>
+
+namespace fieldcast {
+
+double RateLimit::left_at(TimePoint now) const {
+    const double elapsed_s = std::chrono::duration<double>(std::max(now - at_, TimePoint::duration(0))).count();
+    return std::min(rate_.burst, left_ + elapsed_s * rate_.per_second);
+}
+
+bool RateLimit::take(TimePoint now) {
+    left_ = left_at(now);
+    at_ = now;
+    if (left_ < 1.0) {
+        return false;
+    }
+    left_ -= 1.0;
+    return true;
+}
+
+} // namespace fieldcast

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fieldcast {
+
+/// One `key = value` of a TOML file, as text. Numbers are written so that they read back the same.
+struct TomlEntry {
+    std::string key;
+    std::vector<std::string> values; ///< several: it was an array
+    bool is_switch = false;          ///< the value is true or false
+    int line = 0;                    ///< from 1
+};
+
+/// A flat file of settings.
+struct TomlFile {
+    std::vector<TomlEntry> entries;    ///< in the order of their lines
+    std::vector<std::string> problems; ///< "FILE:LINE: …", for everything that is no setting
+};
+
+/// Reads `key = value` lines at the top level: texts, numbers, true, false and arrays of these. The file has at most
+/// 1 MiB, a text at most 4096 bytes, an array at most 256 values. Never throws for what the file says.
+TomlFile read_toml(const std::filesystem::path& file);
+
+/// `text` as a value in TOML, with quotes.
+std::string toml_quoted(std::string_view text);
+
+} // namespace fieldcast

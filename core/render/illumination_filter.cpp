@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/illumination_filter.h"
+
+namespace fieldcast::render {
+
+IlluminationFilter::IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene)
+    : accumulation_(device, scene), svgf_(device, accumulation_), result_(&accumulation_.noisy()) {}
+
+void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+    if (frame.is_still) {
+        accumulation_.record(recorder, frame, {});
+        result_ = &accumulation_.now().light;
+        return;
+    }
+    switch (frame.settings.denoiser) {
+    case Denoiser::kNone:
+        result_ = &accumulation_.noisy();
+        if (frame.settings.temporal_accumulation) {
+            accumulation_.record(recorder, frame, {});
+            result_ = &accumulation_.now().light;
+        }
+        break;
+    case Denoiser::kSvgf:
+    case Denoiser::kSvgfPlus:
+        accumulation_.record(recorder, frame, Svgf::accumulation_options(frame.settings.denoiser));
+        result_ = &svgf_.record(recorder, frame);
+        break;
+    }
+}
+
+} // namespace fieldcast::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/access/certificate.h"
+#include "server/access/gate.h"
+#include "server/access/text_file.h"
+
+#include <functional>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace fieldcast::access {
+
+/// What a server is protected by.
+struct Security {
+    std::optional<CertificateFiles> certificates; ///< unset: plain text
+    std::optional<std::filesystem::path> tokens;  ///< unset: everybody may do everything
+};
+
+/// Follows changes of the token file and the certificates once a second, in a thread of its own. A file that has become
+/// unusable is reported and what was read before stays in force.
+class AccessWatch {
+public:
+    /// Reads the tokens into `gate`, which must outlive this. `on_new_tokens` is called after each later change. Throws
+    /// UserError if a file is not usable now.
+    AccessWatch(const Security& security, Gate& gate, std::function<void()> on_new_tokens);
+
+private:
+    std::vector<FileStamp> certificate_stamps() const;
+    void watch(const std::stop_token& stop);
+    void look_at_tokens();
+    void look_at_certificates();
+
+    Security security_;
+    Gate& gate_;
+    std::function<void()> on_new_tokens_;
+    FileStamp token_stamp_;
+    std::vector<FileStamp> certificate_stamps_;
+    std::jthread thread_;
+};
+
+} // namespace fieldcast::access

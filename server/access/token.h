@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fieldcast::access {
+
+/// SHA-256 of a token. Tokens have 256 random bits, so a plain hash cannot be searched backwards: no salt, no
+/// stretching.
+using TokenHash = std::array<std::uint8_t, 32>;
+
+/// A new secret: "fc_" and 43 characters of base64url (RFC 4648, section 5), 256 bits from the system's random
+/// generator.
+std::string make_token();
+
+TokenHash hash_token(std::string_view token);
+
+std::string to_hex(const TokenHash& hash);
+std::optional<TokenHash> parse_hash(std::string_view hex); ///< 64 hexadecimal digits
+
+/// In a time that does not depend on where they differ.
+bool is_equal(const TokenHash& a, const TokenHash& b);
+
+} // namespace fieldcast::access

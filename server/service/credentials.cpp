@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/credentials.h"
+
+#include "core/base/guarded.h"
+#include "core/base/log.h"
+#include "core/base/rate_limit.h"
+#include "server/service/status.h"
+
+#include <grpcpp/security/auth_metadata_processor.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
+
+namespace fieldcast::service {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr unsigned kCertificateRefresh_s = 1;
+constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // strangers must not fill the disk
+
+std::string_view view_of(const grpc::string_ref& text) {
+    return {text.data(), text.size()};
+}
+
+using Headers = std::multimap<grpc::string_ref, grpc::string_ref>;
+
+/// A header's value; nothing if it is absent or repeated.
+std::optional<std::string_view> find(const Headers& headers, const char* name) {
+    return headers.count(name) == 1 ? std::optional(view_of(headers.find(name)->second)) : std::nullopt;
+}
+
+Problem problem_of(access::Denial::Kind kind) {
+    const bool is_known = kind == access::Denial::Kind::kRoleTooLow;
+    return is_known ? Problem::kForbidden : Problem::kUnauthenticated;
+}
+
+/// Asks the gate about every call.
+class TokenCheck final : public grpc::AuthMetadataProcessor {
+public:
+    explicit TokenCheck(const access::Gate& gate) : gate_(gate) {}
+
+    bool IsBlocking() const override { return false; }
+
+    grpc::Status Process(const InputMetadata& headers, grpc::AuthContext*, OutputMetadata*, OutputMetadata*) override {
+        const std::string_view method = find(headers, ":path").value_or("");
+        const auto identity = gate_.admit(find(headers, "authorization"), method);
+        if (identity) {
+            return grpc::Status::OK;
+        }
+        log(method, identity.error());
+        return to_status(problem_of(identity.error().kind), identity.error().message);
+    }
+
+private:
+    void log(std::string_view method, const access::Denial& denial) {
+        if (log_rate_.lock()->take(Clock::now())) {
+            log::warn("call denied", {{"method", method.substr(0, 100)}, {"reason", denial.message}});
+        }
+    }
+
+    const access::Gate& gate_;
+    Guarded<RateLimit> log_rate_{RateLimit(kLogRate)};
+};
+
+std::shared_ptr<grpc::ServerCredentials> tls_credentials(const access::CertificateFiles& files) {
+    namespace tls = grpc::experimental;
+    const std::string client_ca = files.client_ca ? files.client_ca->string() : "";
+    const auto provider = std::make_shared<tls::FileWatcherCertificateProvider>(
+        files.key.string(), files.certificate.string(), client_ca, kCertificateRefresh_s);
+    tls::TlsServerCredentialsOptions options(provider);
+    options.watch_identity_key_cert_pairs();
+    if (files.client_ca) {
+        options.watch_root_certs();
+        options.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+    }
+    return tls::TlsServerCredentials(options);
+}
+
+} // namespace
+
+std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate) {
+    std::shared_ptr<grpc::ServerCredentials> credentials;
+    if (security.certificates) {
+        credentials = tls_credentials(*security.certificates);
+    } else if (security.tokens) { // plain text, but of a kind that gRPC lets check calls
+        credentials = grpc::experimental::LocalServerCredentials(LOCAL_TCP);
+    } else {
+        return grpc::InsecureServerCredentials();
+    }
+    if (security.tokens) {
+        credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(gate));
+    }
+    return credentials;
+}
+
+tl::expected<access::Identity, access::Denial> identify(const grpc::CallbackServerContext& context,
+                                                        const access::Gate& gate) {
+    return gate.admit(find(context.client_metadata(), "authorization"), "this call", access::Role::kView);
+}
+
+} // namespace fieldcast::service

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// TLS, certificates of clients, tokens and their replacement, against a server with a synthetic channel.
+#include "certificate_authority.h"
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "server/service/grpc_server.h"
+#include "server_client.h"
+#include "server_synthetic.h"
+#include "test_folder.h"
+
+#include <gmock/gmock.h>
+#include <thread>
+
+namespace fieldcast::test {
+namespace {
+
+using namespace std::chrono_literals;
+using grpc::StatusCode;
+using testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+using Kind = v1::ServerMessage;
+
+constexpr const char* kHealthCheck = "/grpc.health.v1.Health/Check";
+constexpr const char* kReflection = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
+constexpr const char* kListServices = "\x3A\x01*"; // ServerReflectionRequest.list_services = "*"
+constexpr const char* kServing = "\x08\x01";       // HealthCheckResponse.status = SERVING
+constexpr auto kRefusalPatience = 2s; // handshakes take milliseconds; a refused one is tried again until then
+constexpr auto kReloadPatience = 20s; // files are looked at once a second
+
+std::string line(const std::string& name, access::Role role, const std::string& token) {
+    return access::token_line({.name = name, .role = role, .hash = access::hash_token(token)}) + "\n";
+}
+
+session::Limits quick_limits() {
+    session::Limits limits;
+    limits.going_away_deadline = 500ms;
+    return limits;
+}
+
+class Security : public testing::Test {
+protected:
+    Security() {
+        issue(authority_);
+        write_file(folder_ / "tokens.txt",
+                   line("viewer", access::Role::kView, viewer_) + line("operator", access::Role::kAdmin, operator_));
+    }
+
+    void issue(const CertificateAuthority& authority) {
+        const Issued issued = authority.issue();
+        write_file(folder_ / "key.pem", issued.key);
+        write_file(folder_ / "cert.pem", issued.certificate);
+    }
+
+    access::Security tls() const {
+        return {.certificates = access::CertificateFiles{.certificate = folder_ / "cert.pem",
+                                                         .key = folder_ / "key.pem",
+                                                         .client_ca = std::nullopt},
+                .tokens = std::nullopt};
+    }
+
+    access::Security tls_and_tokens() const {
+        access::Security security = tls();
+        security.tokens = folder_ / "tokens.txt";
+        return security;
+    }
+
+    std::unique_ptr<service::GrpcServer> serve(const access::Security& security) {
+        return std::make_unique<service::GrpcServer>(HostPort{.host = "127.0.0.1", .port = 0},
+                                                     std::vector{channel_.feed()}, quick_limits(), security);
+    }
+
+    static std::shared_ptr<grpc::ChannelCredentials> trusting(const CertificateAuthority& authority,
+                                                              const Issued& own = {}) {
+        return grpc::SslCredentials(
+            {.pem_root_certs = authority.certificate(), .pem_private_key = own.key, .pem_cert_chain = own.certificate});
+    }
+
+    /// Of a ListChannels over a new connection.
+    static grpc::Status status_of(int port, const std::shared_ptr<grpc::ChannelCredentials>& credentials,
+                                  const std::string& token = "", std::chrono::seconds patience = kCallDeadline) {
+        grpc::ClientContext context;
+        context.set_wait_for_ready(true);
+        context.set_deadline(std::chrono::system_clock::now() + patience);
+        if (!token.empty()) {
+            context.AddMetadata("authorization", "Bearer " + token);
+        }
+        v1::ListChannelsResponse response;
+        return v1::Catalog::NewStub(connect(port, credentials))->ListChannels(&context, {}, &response);
+    }
+
+    const TestFolder folder_;
+    const CertificateAuthority authority_;
+    const std::string viewer_ = access::make_token();
+    const std::string operator_ = access::make_token();
+    SyntheticChannel channel_;
+};
+
+TEST_F(Security, NobodyListensBeyondLoopbackUnprotected) {
+    access::Security tokens_only;
+    tokens_only.tokens = folder_ / "tokens.txt";
+    for (const access::Security& security : {access::Security{}, tls(), tokens_only}) {
+        EXPECT_THROW(service::GrpcServer({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(), security),
+                     UserError);
+    }
+    const service::GrpcServer open({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(), tls_and_tokens());
+    EXPECT_TRUE(status_of(open.port(), trusting(authority_), viewer_).ok());
+}
+
+TEST_F(Security, SendsFramesEncryptedToWhoeverShowsAToken) {
+    const auto server = serve(tls_and_tokens());
+    OpenCall call(connect(server->port(), trusting(authority_)), viewer_);
+    call.configure();
+    EXPECT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
+    call.half_close();
+    EXPECT_TRUE(call.finish().ok());
+}
+
+TEST_F(Security, EveryServiceAsksForAToken) {
+    const auto server = serve(tls_and_tokens());
+    const auto connection = connect(server->port(), trusting(authority_));
+    std::string answer;
+    for (const char* const token : {"", "fc_wrong"}) {
+        EXPECT_EQ(OpenCall(connection, token).finish().error_code(), StatusCode::UNAUTHENTICATED);
+        EXPECT_EQ(call_raw(*connection, kHealthCheck, "", answer, token).error_code(), StatusCode::UNAUTHENTICATED);
+        EXPECT_EQ(exchange_raw(*connection, kReflection, kListServices, answer, token).error_code(),
+                  StatusCode::UNAUTHENTICATED);
+        EXPECT_EQ(status_of(server->port(), trusting(authority_), token).error_code(), StatusCode::UNAUTHENTICATED);
+    }
+    EXPECT_EQ(answer, "");
+    EXPECT_THAT(OpenCall(connection).finish().error_message(), HasSubstr("--token-file"));
+    EXPECT_EQ(server->session_count(), 0U);
+}
+
+TEST_F(Security, RolesSayWhatATokenOpens) {
+    const auto server = serve(tls_and_tokens());
+    const auto connection = connect(server->port(), trusting(authority_));
+    std::string answer;
+    EXPECT_TRUE(call_raw(*connection, kHealthCheck, "", answer, viewer_).ok());
+    EXPECT_EQ(answer, kServing);
+    const grpc::Status forbidden = exchange_raw(*connection, kReflection, kListServices, answer, viewer_);
+    EXPECT_EQ(forbidden.error_code(), StatusCode::PERMISSION_DENIED);
+    EXPECT_THAT(forbidden.error_message(), HasSubstr("'viewer' has the role view"));
+    EXPECT_TRUE(exchange_raw(*connection, kReflection, kListServices, answer, operator_).ok());
+    EXPECT_THAT(answer, HasSubstr("fieldcast.v1.LightField"));
+}
+
+TEST_F(Security, TokensWorkInPlainTextOnLoopback) {
+    access::Security security;
+    security.tokens = folder_ / "tokens.txt";
+    const auto server = serve(security);
+    EXPECT_TRUE(status_of(server->port(), grpc::InsecureChannelCredentials(), viewer_).ok());
+    EXPECT_EQ(status_of(server->port(), grpc::InsecureChannelCredentials()).error_code(), StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(Security, StrangersCannotShakeHands) {
+    const auto server = serve(tls_and_tokens());
+    const CertificateAuthority other;
+    EXPECT_FALSE(status_of(server->port(), grpc::InsecureChannelCredentials(), viewer_, kRefusalPatience).ok());
+    EXPECT_FALSE(status_of(server->port(), trusting(other), viewer_, kRefusalPatience).ok());
+    EXPECT_TRUE(status_of(server->port(), trusting(authority_), viewer_).ok());
+}
+
+TEST_F(Security, ClientsShowACertificateWhenAsked) {
+    const CertificateAuthority clients;
+    write_file(folder_ / "clients.pem", clients.certificate());
+    access::Security security = tls_and_tokens();
+    security.certificates->client_ca = folder_ / "clients.pem";
+    const auto server = serve(security);
+    const auto attempt = [&](const Issued& own, const std::string& token, std::chrono::seconds patience) {
+        return status_of(server->port(), trusting(authority_, own), token, patience);
+    };
+    EXPECT_TRUE(attempt(clients.issue(), viewer_, kCallDeadline).ok());
+    EXPECT_EQ(attempt(clients.issue(), "", kCallDeadline).error_code(), StatusCode::UNAUTHENTICATED);
+    EXPECT_FALSE(attempt({}, viewer_, kRefusalPatience).ok());
+    EXPECT_FALSE(attempt(authority_.issue(), viewer_, kRefusalPatience).ok()) << "signed by somebody else";
+}
+
+TEST_F(Security, TakesUpARenewedCertificate) {
+    const auto server = serve(tls());
+    ASSERT_TRUE(status_of(server->port(), trusting(authority_)).ok());
+    const CertificateAuthority successor;
+    issue(successor);
+    EXPECT_TRUE(status_of(server->port(), trusting(successor), "", kReloadPatience).ok());
+    EXPECT_FALSE(status_of(server->port(), trusting(authority_), "", kRefusalPatience).ok());
+}
+
+TEST_F(Security, RevokedTokensEndTheirSessions) {
+    const auto server = serve(tls_and_tokens());
+    OpenCall stays(connect(server->port(), trusting(authority_)), operator_);
+    OpenCall leaves(connect(server->port(), trusting(authority_)), viewer_);
+    stays.configure();
+    leaves.configure();
+    ASSERT_TRUE(stays.read_until(Kind::kConfigured).has_value());
+    ASSERT_TRUE(leaves.read_until(Kind::kConfigured).has_value());
+    const std::string successor = access::make_token();
+    write_file(folder_ / "tokens.txt",
+               line("viewer", access::Role::kView, successor) + line("operator", access::Role::kAdmin, operator_));
+    const auto going_away = leaves.read_until(Kind::kGoingAway);
+    ASSERT_TRUE(going_away.has_value());
+    EXPECT_THAT(going_away->going_away().reason(), HasSubstr("revoked"));
+    EXPECT_EQ(leaves.finish().error_code(), StatusCode::DEADLINE_EXCEEDED) << "it did not half-close";
+    EXPECT_EQ(status_of(server->port(), trusting(authority_), viewer_).error_code(), StatusCode::UNAUTHENTICATED);
+    EXPECT_TRUE(status_of(server->port(), trusting(authority_), successor).ok());
+    EXPECT_EQ(server->session_count(), 1U);
+    stays.half_close();
+    EXPECT_TRUE(stays.finish().ok());
+}
+
+TEST_F(Security, DamagedTokenFilesChangeNothing) {
+    testing::internal::CaptureStderr();
+    const auto server = serve(tls_and_tokens());
+    write_file(folder_ / "tokens.txt", "viewer view " + viewer_ + "\n"); // the token itself, by mistake
+    std::string log;
+    for (const auto deadline = Clock::now() + kReloadPatience;
+         log.find("tokens not replaced") == std::string::npos && Clock::now() < deadline;) {
+        std::this_thread::sleep_for(50ms); // a log has no event to wait for
+        log += testing::internal::GetCapturedStderr();
+        testing::internal::CaptureStderr();
+    }
+    testing::internal::GetCapturedStderr();
+    EXPECT_THAT(log, HasSubstr("tokens not replaced"));
+    EXPECT_THAT(log, HasSubstr("tokens.txt:1"));
+    EXPECT_THAT(log, Not(HasSubstr(viewer_)));
+    EXPECT_TRUE(status_of(server->port(), trusting(authority_), viewer_).ok());
+}
+
+} // namespace
+} // namespace fieldcast::test
