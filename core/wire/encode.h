@@ -13,9 +13,8 @@
 
 // Encoding: once per frame, plane and codec, once per view; shared by all clients of a channel.
 //
-//     auto source = encode_source(frame, {{kDiffuse, {kZstdFiltered}}, {kDepth, {kRaw}}}, {}, pool); // union of all
-//     wishes auto views = encode_views(rendered_union, view_format, {}, pool);                          // union of all
-//     grids
+//     auto source = encode_source(frame, {{kDiffuse, {kZstdFiltered}}, {kDepth, {kRaw}}}, {}, pool); // all wishes' union
+//     auto views = encode_views(rendered_union, view_format, {}, pool);                              // all grids' union
 //
 // Both results are immutable; keep them in a shared_ptr. `chunks.h` makes a client's frame from them without copying.
 namespace fieldcast::wire {
