@@ -18,7 +18,7 @@ bool is_lossy(CodecId codec) {
 }
 
 bool fits(CodecId codec, PlaneFormat format) {
-    return !is_lossy(codec) || format == PlaneFormat::kRgb8;
+    return !is_lossy(codec) || format == PlaneFormat::kRgb8 || format == PlaneFormat::kR11G11B10F;
 }
 
 } // namespace fieldcast::codec

@@ -13,7 +13,7 @@ namespace fieldcast::codec {
 enum class CodecId : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< predictor per format, byte planes, zstd level 1; lossless
-    kJpeg = 3,         ///< kRgb8: baseline JPEG without subsampling; lossy
+    kJpeg = 3,         ///< kRgb8, kR11G11B10F: baseline JPEG without subsampling; lossy
 };
 
 /// The codec with that number, or nothing.

@@ -16,9 +16,6 @@ namespace fieldcast::codec {
 
 namespace {
 
-constexpr double kStepAtQuality50 = 22.0; ///< of the mean; libjpeg's table has 16
-constexpr double kStepGrowth = 0.08;      ///< per cycle of distance from the mean, relative
-
 struct ErrorHandler {
     jpeg_error_mgr library{}; ///< first: the library hands its address around
     std::jmp_buf jump{};
@@ -61,12 +58,11 @@ struct Decompressor {
     ~Decompressor() { jpeg_destroy_decompress(&info); }
 };
 
-/// Noise is most of what path-traced pictures hold: steps grow little with the frequency.
-void set_table(jpeg_compress_struct& info, int table, double step) {
+void set_table(jpeg_compress_struct& info, int table, double step, double growth) {
     std::array<unsigned, DCTSIZE2> steps{};
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const double frequency = std::hypot(static_cast<double>(i / DCTSIZE), static_cast<double>(i % DCTSIZE));
-        steps[i] = static_cast<unsigned>(std::max(1.0, std::round(step * (1.0 + kStepGrowth * frequency))));
+        steps[i] = static_cast<unsigned>(std::max(1.0, std::round(step * (1.0 + growth * frequency))));
     }
     jpeg_add_quant_table(&info, table, steps.data(), 100, TRUE); // TRUE: at most 255, as baseline decoders want
 }
@@ -74,9 +70,9 @@ void set_table(jpeg_compress_struct& info, int table, double step) {
 void set_quality(jpeg_compress_struct& info, JpegQuality quality) {
     const double q = std::clamp<int>(quality.quality, 1, 100);
     const double scale = q < 50.0 ? 50.0 / q : 2.0 - 0.02 * q;
-    const double step = std::max(1.0, kStepAtQuality50 * scale);
-    set_table(info, 0, step);
-    set_table(info, 1, step * quality.chroma_coarseness);
+    const double step = std::max(1.0, quality.step_at_quality_50 * scale);
+    set_table(info, 0, step, quality.step_growth);
+    set_table(info, 1, step * quality.chroma_coarseness, quality.step_growth);
     for (int c = 0; c < info.num_components; ++c) {
         info.comp_info[c].h_samp_factor = info.comp_info[c].v_samp_factor = 1;
     }

@@ -2,9 +2,11 @@
 #include "core/codec/plane_codec.h"
 
 #include "core/codec/jpeg.h"
+#include "core/codec/light_curve.h"
 #include "core/codec/zstd_body.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 namespace fieldcast::codec {
@@ -58,6 +60,56 @@ ByteFilter choose_filter(PlaneFormat format, const Rows& rows) {
     return is_temporal_cheaper ? temporal : spatial;
 }
 
+RgbSize rgb_size(BandSize size) {
+    return {size.width_px, size.row_count};
+}
+
+/// Samples of a picture, where pixels are light; kept per thread.
+std::span<std::byte> sample_scratch(BandSize size) {
+    thread_local std::vector<std::byte> samples;
+    samples.resize(rgb_size(size).bytes());
+    return samples;
+}
+
+/// False, with `strip` unchanged, if the result is not smaller than the pixels.
+bool append_jpeg(PlaneFormat format, const Rows& rows, const StripOptions& options, std::vector<std::byte>& strip) {
+    JpegQuality quality = kViewQuality;
+    std::span<const std::byte> samples = rows.pixels;
+    std::vector<std::byte> body;
+    if (format == PlaneFormat::kR11G11B10F) {
+        quality = kLightQuality;
+        const LightCurve curve = light_curve_for(rows.pixels, options.exposure);
+        const auto scratch = sample_scratch(rows.size);
+        samples_from_light(curve, rows.pixels, scratch);
+        samples = scratch;
+        std::ranges::copy(encode_curve(curve), std::back_inserter(body));
+    }
+    quality.quality = options.encoding.quality;
+    std::ranges::copy(encode_jpeg(samples, rgb_size(rows.size), quality), std::back_inserter(body));
+    if (body.size() >= rows.pixels.size()) {
+        return false;
+    }
+    strip.insert(strip.end(), body.begin(), body.end());
+    return true;
+}
+
+Decoded<void> decode_jpeg_body(PlaneFormat format, BandSize size, std::span<const std::byte> body,
+                               std::span<std::byte> pixels) {
+    if (format != PlaneFormat::kR11G11B10F) {
+        return decode_jpeg(body, rgb_size(size), pixels);
+    }
+    const auto curve = decode_curve(body);
+    if (!curve) {
+        return tl::unexpected(curve.error());
+    }
+    const auto samples = sample_scratch(size);
+    if (const auto result = decode_jpeg(body.subspan(kLightCurveBytes), rgb_size(size), samples); !result) {
+        return result;
+    }
+    light_from_samples(*curve, samples, pixels);
+    return {};
+}
+
 /// Appends the body to `strip`, which consists of an unwritten header, and says in `header` what it is.
 void append_body(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
     if (!rows.reference.empty() && std::ranges::equal(rows.pixels, rows.reference)) {
@@ -66,10 +118,7 @@ void append_body(const Rows& rows, const StripOptions& options, StripHeader& hea
     }
     if (options.encoding.codec == CodecId::kJpeg) {
         header.coding = StripCoding::kJpeg;
-        const auto file =
-            encode_jpeg(rows.pixels, {rows.size.width_px, rows.size.row_count}, {.quality = options.encoding.quality});
-        if (file.size() < rows.pixels.size()) {
-            strip.insert(strip.end(), file.begin(), file.end());
+        if (append_jpeg(header.format, rows, options, strip)) {
             return;
         }
     }
@@ -95,7 +144,7 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
         return decode_zstd(header.filter, rows.size, body, is_temporal ? rows.reference : std::span<const std::byte>(),
                            pixels);
     case StripCoding::kJpeg:
-        return decode_jpeg(body, {rows.size.width_px, rows.size.row_count}, pixels);
+        return decode_jpeg_body(header.format, rows.size, body, pixels);
     case StripCoding::kRepeat:
         if (!body.empty()) {
             return decode_error("strip: a repetition has no bytes");

@@ -28,6 +28,7 @@ struct StripOptions {
     /// The plane that the receiver has from an earlier frame, of the same format and size, as it was before it was
     /// encoded; null: the strip refers to nothing.
     const Plane* reference = nullptr;
+    float exposure = 1.0F; ///< of the frame: what multiplies light before it is shown; lossy codecs spend bits by it
     std::optional<ByteFilter> filter{}; ///< for tests and benchmarks; otherwise the cheaper one
 };
 

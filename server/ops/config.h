@@ -57,7 +57,7 @@ struct Config {
     bool has_auto_exposure = true;
     std::uint32_t seed = 1;
 
-    std::uint32_t view_quality = 75; ///< of views in a lossy codec, 1 to 100, if the client does not say
+    std::uint32_t lossy_quality = 75; ///< of planes in a lossy codec, 1 to 100, if the client does not say
 
     // Device.
     std::string traversal = "auto";

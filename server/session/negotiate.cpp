@@ -153,7 +153,7 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
         const auto codec = wire::from_proto(static_cast<v1::Codec>(number));
         if (codec && codec::fits(*codec, wire::wire_format(semantic))) {
             const auto asked = static_cast<std::uint8_t>(preference->quality());
-            const std::uint8_t quality = asked != 0 ? asked : channel.view_quality;
+            const std::uint8_t quality = asked != 0 ? asked : channel.lossy_quality;
             return codec::Encoding{*codec, codec::is_lossy(*codec) ? quality : std::uint8_t{0}};
         }
     }

@@ -159,6 +159,10 @@ TEST_F(Negotiate, ChoosesTheFirstCodecThatFitsThePlane) {
     wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
     wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
     prefer(v1::PLANE_SEMANTIC_DEPTH, 60);
+    prefer(v1::PLANE_SEMANTIC_DIFFUSE, 60);
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[0].encoding,
+              (codec::Encoding{codec::CodecId::kJpeg, 60}));
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[1].encoding, codec::Encoding{});
     EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[2].encoding, (codec::Encoding{codec::CodecId::kRaw, 0}));
     prefer(v1::PLANE_SEMANTIC_NORMAL, 101);
     EXPECT_EQ(refusal().field, "codecs");

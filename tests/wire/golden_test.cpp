@@ -65,6 +65,22 @@ TEST(GoldenStrips, Version1JpegDecodes) {
     EXPECT_GT(largest, 0);  // it is not lossless
 }
 
+TEST(GoldenStrips, Version1JpegOfLightDecodes) {
+    const Plane expected = light_plane(33, 20);
+    Plane decoded = expected;
+    std::fill_n(decoded.bytes.begin() + 3 * 132, 15 * 132, std::byte{0});
+    const auto strip = read_bytes("tests/data/wire/v1/r11g11b10f_jpeg.strip");
+    const auto result = decode_strip(strip, {3, 15}, {.codec = CodecId::kJpeg}, decoded);
+    ASSERT_TRUE(result) << result.error().message;
+    int largest = 0;
+    for (std::size_t i = 0; i < 33 * 20; ++i) {
+        const int green = green_bits(expected, i);
+        largest = green != 0 ? std::max(largest, std::abs(green_bits(decoded, i) - green)) : largest;
+    }
+    EXPECT_LE(largest, 24); // of 64 to an octave
+    EXPECT_GT(largest, 0);
+}
+
 TEST(GoldenStrips, EncoderStillWritesTheSameHeaders) {
     for (const PlaneFormat format : kAllFormats) {
         const auto golden = read_bytes("tests/data/wire/v1/" + name_of(format) + "_predicted.strip");

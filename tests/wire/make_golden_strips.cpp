@@ -39,6 +39,8 @@ void write_valid(const std::filesystem::path& folder) {
     }
     const Plane picture = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
     write(folder / "rgb8_jpeg.strip", codec::encode_strip(picture, {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
+    write(folder / "r11g11b10f_jpeg.strip",
+          codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
 }
 
 Bytes with_byte(Bytes strip, std::size_t at, std::uint8_t value) {
@@ -85,6 +87,11 @@ void write_malformed(const std::filesystem::path& folder) {
     write(folder / "jpeg_filter.strip", with_byte(jpeg, 3, 1));
     write(folder / "jpeg_cut.strip", with_body(jpeg, std::span(jpeg).subspan(16, jpeg.size() - 20)));
     write(folder / "jpeg_in_zstd_plane.strip", jpeg);
+    const Bytes light = codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {CodecId::kJpeg, 95}});
+    write(folder / "light_no_curve.strip", with_body(light, std::span(light).subspan(16, 7)));
+    write(folder / "light_no_picture.strip", with_body(light, std::span(light).subspan(16, 8)));
+    write(folder / "light_negative_knee.strip", with_byte(light, 19, 0xBD));
+    write(folder / "light_infinite_top.strip", with_byte(with_byte(light, 22, 0x80), 23, 0x7F));
     write(folder / "raw_short.strip", with_body(raw, std::span(raw).subspan(16, 100)));
     Bytes twice(body.begin(), body.end());
     twice.insert(twice.end(), body.begin(), body.end());

@@ -59,7 +59,7 @@ TEST(MalformedFrame, HostilePlaneHeaders) {
             {"twice", 0, [](auto& c) { plane(c, 1) = plane(c, 0); }},
             {"unknown semantic", 0, [](auto& c) { plane(c, 0).set_semantic(static_cast<v1::PlaneSemantic>(99)); }},
             {"unknown semantic", 0, [](auto& c) { plane(c, 0).set_codec(static_cast<v1::Codec>(99)); }},
-            {"is not for format", 0, [](auto& c) { plane(c, 0).set_codec(v1::CODEC_JPEG); }},
+            {"is not for format", 0, [](auto& c) { plane(c, 1).set_codec(v1::CODEC_JPEG); }},
             {"is not sent in format", 0, [](auto& c) { plane(c, 0).set_format(v1::PLANE_FORMAT_RG8); }},
             {"size differs", 0, [](auto& c) { plane(c, 0).set_width_px(kHuge); }},
             {"size differs", 0, [](auto& c) { plane(c, 5).set_height_px(1); }},

@@ -19,6 +19,7 @@ struct MalformedFile {
     const char* name;
     const char* error;
     CodecId announced = CodecId::kZstdFiltered;
+    PlaneFormat format = PlaneFormat::kRgb8;
 };
 
 TEST(MalformedStrip, FilesGiveTheNamedError) {
@@ -49,9 +50,13 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
         {"jpeg_filter", "only ZSTD_FILTERED has a filter"},
         {"jpeg_in_zstd_plane", "JPEG in a plane of another codec"},
         {"jpeg_cut", "damaged", CodecId::kJpeg},
+        {"light_no_curve", "without its curve", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_no_picture", "JPEG", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_negative_knee", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_infinite_top", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
     };
     for (const MalformedFile& file : files) {
-        Plane plane = empty_plane(PlaneFormat::kRgb8, 33, 20);
+        Plane plane = empty_plane(file.format, 33, 20);
         const auto strip = read_bytes("tests/data/wire/v1/malformed/" + std::string(file.name) + ".strip");
         const auto result = decode_strip(strip, kBand, {.codec = file.announced}, plane);
         ASSERT_FALSE(result) << file.name;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
+#include "core/codec/light_curve.h"
 
 #include "tests/wire/test_planes.h"
 
@@ -172,9 +173,36 @@ TEST(PlaneCodec, JpegRepeatsWhatTheReceiverHas) {
     EXPECT_TRUE(again == received);
 }
 
-TEST(PlaneCodec, JpegIsForPicturesOnly) {
+TEST(PlaneCodec, JpegTakesLight) {
+    const Plane plane = light_plane(96, 48);
+    const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = 2.0F});
+    EXPECT_EQ(strip[1], static_cast<std::byte>(StripCoding::kJpeg));
+    EXPECT_LT(strip.size(), plane.bytes.size() / 4);
+    Plane decoded = empty_plane(plane.format, 96, 48);
+    const auto result = decode_strip(strip, {0, 48}, {.codec = CodecId::kJpeg}, decoded);
+    ASSERT_TRUE(result) << result.error().message;
+    double error = 0.0;
+    for (std::size_t i = 0; i < 96 * 48; ++i) {
+        const int green = green_bits(plane, i);
+        error += green != 0 ? std::abs(green_bits(decoded, i) - green) : 0.0;
+    }
+    // Bits of the float: 64 are an octave. Steps of 2 in samples are about a tenth of an octave each here.
+    EXPECT_LT(error / (96.0 * 48.0), 6.0);
+}
+
+TEST(PlaneCodec, BrighterExposureSpendsMoreOnDarkLight) {
+    const Plane plane = light_plane(96, 48);
+    const auto knee = [&](float exposure) {
+        const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = exposure});
+        return decode_curve(std::span(strip).subspan(kStripHeaderBytes))->knee;
+    };
+    EXPECT_FLOAT_EQ(knee(1.0F) / knee(8.0F), 8.0F);
+}
+
+TEST(PlaneCodec, JpegIsForPicturesAndLight) {
     for (const PlaneFormat format : kAllFormats) {
-        EXPECT_EQ(fits(CodecId::kJpeg, format), format == PlaneFormat::kRgb8) << name_of(format);
+        const bool is_picture = format == PlaneFormat::kRgb8 || format == PlaneFormat::kR11G11B10F;
+        EXPECT_EQ(fits(CodecId::kJpeg, format), is_picture) << name_of(format);
         EXPECT_TRUE(fits(CodecId::kZstdFiltered, format) && fits(CodecId::kRaw, format));
     }
 }
