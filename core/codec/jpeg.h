@@ -31,7 +31,7 @@ struct JpegQuality {
 /// For finished views. Noise is most of what path-traced pictures hold: steps grow little with the frequency.
 inline constexpr JpegQuality kViewQuality{};
 /// For light on a LightCurve. Its noise is gone; errors that grow with the frequency would blur its edges.
-inline constexpr JpegQuality kLightQuality{.step_at_quality_50 = 10, .step_growth = 0, .chroma_coarseness = 5};
+inline constexpr JpegQuality kLightQuality{.step_at_quality_50 = 8, .step_growth = 0, .chroma_coarseness = 5};
 
 /// A whole JPEG file. `rgb` has size.bytes().
 std::vector<std::byte> encode_jpeg(std::span<const std::byte> rgb, RgbSize size, JpegQuality quality);
