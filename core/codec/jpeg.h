@@ -23,15 +23,15 @@ struct RgbSize {
 /// What the quantisation tables are made of.
 struct JpegQuality {
     std::uint8_t quality = 75;      ///< 1 to 100, scales the tables as libjpeg does
-    double step_at_quality_50 = 22; ///< of the mean of Y
-    double step_growth = 0.08;      ///< per cycle of distance from the mean, relative
-    double chroma_coarseness = 3;   ///< steps of Cb and Cr, relative to those of Y
+    double step_at_quality_50 = 27; ///< of the mean of Y
+    double step_growth = 0.04;      ///< per cycle of distance from the mean, relative
+    double chroma_coarseness = 4;   ///< steps of Cb and Cr, relative to those of Y
 };
 
 /// For finished views. Noise is most of what path-traced pictures hold: steps grow little with the frequency.
 inline constexpr JpegQuality kViewQuality{};
 /// For light on a LightCurve. Its noise is gone; errors that grow with the frequency would blur its edges.
-inline constexpr JpegQuality kLightQuality{.step_at_quality_50 = 8, .step_growth = 0, .chroma_coarseness = 5};
+inline constexpr JpegQuality kLightQuality{.step_at_quality_50 = 9, .step_growth = 0, .chroma_coarseness = 5};
 
 /// A whole JPEG file. `rgb` has size.bytes().
 std::vector<std::byte> encode_jpeg(std::span<const std::byte> rgb, RgbSize size, JpegQuality quality);

@@ -56,8 +56,8 @@ void expect_refused(const Bytes& file, RgbSize size, const std::string& message)
 TEST(Jpeg, RoundTripsEverySize) {
     for (const RgbSize size : {RgbSize{1, 1}, RgbSize{7, 3}, RgbSize{33, 20}, RgbSize{640, 120}, RgbSize{16384, 2}}) {
         const Bytes rgb = soft_rgb(size);
-        // Steps of quality 95 are 2.2 and more for Y, three times that for colours: an error of a third of a step each.
-        EXPECT_LT(rms_error(decoded(encode_jpeg(rgb, size, {.quality = 95}), size), rgb), 2.5)
+        // Steps of quality 95 are 2.7 and more for Y, four times that for colours: an error of a third of a step each.
+        EXPECT_LT(rms_error(decoded(encode_jpeg(rgb, size, {.quality = 95}), size), rgb), 3.7)
             << size.width_px << "x" << size.row_count;
     }
 }
@@ -79,7 +79,7 @@ TEST(Jpeg, BetterQualityIsLargerAndCloser) {
         bytes = file.size();
         error = now;
     }
-    EXPECT_LT(error, 2.5); // steps of 1 to 2 for Y and 3 to 5 for colours
+    EXPECT_LT(error, 2.5); // steps of 1 for Y and 4 to 6 for colours
 }
 
 TEST(Jpeg, TakesWhatOthersWrite) {

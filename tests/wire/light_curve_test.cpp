@@ -76,7 +76,7 @@ TEST(LightCurve, DarknessStaysDark) {
 
 TEST(LightCurve, BrokenValuesDoNotSpoilTheRest) {
     const std::uint32_t one = grey(15U << 6);
-    const Bytes pixels = pixels_of({one, grey(kInfinity), grey(kInfinity + 1)});
+    const Bytes pixels = pixels_of({one, grey(kInfinity), grey(kInfinity + 2)});
     const LightCurve curve = light_curve_for(pixels, 1.0F);
     EXPECT_EQ(curve.top, 1.0F);
     EXPECT_EQ(round_trip(curve, pixels), pixels_of({one, one, 0})); // infinity: the top; NaN: nothing
