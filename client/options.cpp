@@ -18,7 +18,7 @@ Examples:
     fieldcast-client --grid 3x3 --size 320x180 --frames 1 --out out/thin
   Hold the scene and make 25 views on the Vulkan device of this machine:
     fieldcast-client --mode scene --grid 5x5 --size 640x360 --frames 30 --out out/scene --write quilt,exr
-  Thirty-six views at a fifth of the bytes:
+  Thirty-six views at about an eighth of the bytes:
     fieldcast-client --grid 6x6 --codec jpeg,zstd --frames 30
   A horizontal sweep for a lenticular display, with everything that can be written:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around

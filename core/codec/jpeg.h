@@ -22,10 +22,10 @@ struct RgbSize {
 
 /// What the quantisation tables are made of.
 struct JpegQuality {
-    std::uint8_t quality = 75;      ///< 1 to 100, scales the tables as libjpeg does
-    double step_at_quality_50 = 27; ///< of the mean of Y
-    double step_growth = 0.04;      ///< per cycle of distance from the mean, relative
-    double chroma_coarseness = 4;   ///< steps of Cb and Cr, relative to those of Y
+    std::uint8_t quality = 75;        ///< 1 to 100, scales the tables as libjpeg does
+    double step_at_quality_50 = 27.5; ///< of the mean of Y
+    double step_growth = 0.04;        ///< per cycle of distance from the mean, relative
+    double chroma_coarseness = 4;     ///< steps of Cb and Cr, relative to those of Y
 };
 
 /// For finished views. Noise is most of what path-traced pictures hold: steps grow little with the frequency.
