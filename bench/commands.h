@@ -17,6 +17,9 @@ void add_frame_command(CLI::App& app);
 /// What the stages of hole filling save and cost.
 void add_holes_command(CLI::App& app);
 
+/// Bytes and times of every codec, and what lossy ones take away.
+void add_codecs_command(CLI::App& app);
+
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 

@@ -5,6 +5,8 @@
 #include "core/base/bearer_token.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 
@@ -17,6 +19,8 @@ Examples:
     fieldcast-client --grid 3x3 --size 320x180 --frames 1 --out out/thin
   Hold the scene and make 25 views on the Vulkan device of this machine:
     fieldcast-client --mode scene --grid 5x5 --size 640x360 --frames 30 --out out/scene --write quilt,exr
+  Thirty-six views at about an eighth of the bytes:
+    fieldcast-client --grid 6x6 --codec jpeg,zstd --frames 30
   A horizontal sweep for a lenticular display, with everything that can be written:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
   A server elsewhere, with the token that its operator gave out:
@@ -31,11 +35,13 @@ struct FlagText {
     std::string size;
     std::vector<std::string> modes{"views"};
     std::string planes = "g-buffer";
+    std::vector<std::string> codecs{"zstd"};
     std::string save = "last";
     std::vector<std::string> write{"quilt", "views"};
     std::string anchor = "lattice";
     std::string cache;
     double patience_s = 30.0;
+    std::uint32_t quality = 0;
     float fov_deg = 0.0F;
     float spacing_m = -1.0F;
     float convergence_m = -1.0F;
@@ -71,6 +77,13 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
                    "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest")
         ->check(CLI::IsMember({"g-buffer", "illumination"}))
         ->capture_default_str();
+    app.add_option("--codec", text.codecs,
+                   "Of views, or of the illumination in mode scene, most wanted first: zstd (lossless), raw, jpeg")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"zstd", "raw", "jpeg"}))
+        ->capture_default_str();
+    app.add_option("--quality", text.quality, "Of lossy codecs, 1 to 100; without it: the server's choice")
+        ->check(CLI::Range(1, 100));
     app.add_option("--device", play.device, "Of mode scene: part of the Vulkan device's name");
     app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
@@ -137,6 +150,12 @@ void read_grids(const FlagText& text, net::Wish& wish) {
     wish.height_px = size->cols;
 }
 
+codec::CodecId codec_of(const std::string& word) {
+    return word == "raw"    ? codec::CodecId::kRaw
+           : word == "jpeg" ? codec::CodecId::kJpeg
+                            : codec::CodecId::kZstdFiltered;
+}
+
 bool contains(const std::vector<std::string>& words, const char* word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -171,6 +190,9 @@ void read_text(const FlagText& text, Options& options) {
     wish.mode = text.modes.front() == "scene" ? net::Mode::kScene : net::Mode::kViews;
     options.falls_back_to_views = wish.mode == net::Mode::kScene && contains(text.modes, "views");
     wish.planes = text.planes == "illumination" ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
+    wish.quality = static_cast<std::uint8_t>(text.quality);
+    wish.codecs.clear();
+    std::transform(text.codecs.begin(), text.codecs.end(), std::back_inserter(wish.codecs), codec_of);
     wish.anchor = text.anchor == "centre" ? Anchor::kCentre : Anchor::kLattice;
     wish.fovy_rad = text.fov_deg * std::numbers::pi_v<float> / 180.0F;
     wish.spacing_m = text.spacing_m >= 0.0F ? std::optional(text.spacing_m) : std::nullopt;

@@ -32,6 +32,36 @@ v1::PlaneSet to_proto(PlaneWish planes) {
     return v1::PLANE_SET_UNSPECIFIED;
 }
 
+/// Planes for which `Wish::codecs` holds.
+bool is_picture(v1::PlaneSemantic semantic) {
+    return semantic == v1::PLANE_SEMANTIC_COLOUR || semantic == v1::PLANE_SEMANTIC_DIFFUSE ||
+           semantic == v1::PLANE_SEMANTIC_SPECULAR;
+}
+
+void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic semantic) {
+    v1::CodecPreference& preference = *message.add_codecs();
+    preference.set_semantic(semantic);
+    preference.set_quality(wish.quality);
+    for (const codec::CodecId codec : wish.codecs) {
+        preference.add_codecs(wire::to_proto(codec));
+    }
+}
+
+/// Why a server may not send planes in the codecs that it chose, or nothing.
+std::optional<std::string> codec_problem(const v1::Configured& message, const Wish& wish) {
+    for (const v1::PlaneHeader& plane : message.planes()) {
+        const auto codec = wire::from_proto(plane.codec());
+        const bool is_wanted =
+            codec && (is_picture(plane.semantic())
+                          ? std::find(wish.codecs.begin(), wish.codecs.end(), *codec) != wish.codecs.end()
+                          : !codec::is_lossy(*codec));
+        if (!is_wanted) {
+            return "Configured: a codec that was not asked for";
+        }
+    }
+    return std::nullopt;
+}
+
 std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Wish& wish) {
     if (set.grid.rows != wish.rows || set.grid.cols != wish.cols || set.grid.anchor != wish.anchor) {
         return "Configured: another grid than asked for";
@@ -130,6 +160,12 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     message.set_view_height_px(wish.height_px);
     message.set_fovy_rad(wish.fovy_rad);
     message.set_planes(to_proto(wish.planes));
+    if (wish.mode == Mode::kViews) {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
+    } else {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+    }
     message.set_max_frames_per_second(wish.max_frames_per_second);
     message.set_keeps_key_frames(true);
     return message;
@@ -153,6 +189,9 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wi
     }
     agreement.view_set = *set;
     if (const auto problem = view_set_problem(*set, wish)) {
+        return decode_error(*problem);
+    }
+    if (const auto problem = codec_problem(message, wish)) {
         return decode_error(*problem);
     }
     const Decoded<wire::FrameLimits> limits = frame_limits(message, *set, wish.mode);

@@ -34,6 +34,9 @@ struct Wish {
     std::uint32_t height_px = 0;
     float fovy_rad = 0.0F; ///< vertical
     PlaneWish planes = PlaneWish::kWithGBuffer;
+    /// Of views, or of the illumination in mode kScene, most wanted first; other planes are always lossless.
+    std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};
+    std::uint8_t quality = 0; ///< of lossy codecs, 1 to 100; 0: the server's choice
     float max_frames_per_second = 0.0F;
 };
 

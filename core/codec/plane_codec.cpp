@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
 
+#include "core/codec/jpeg.h"
+#include "core/codec/light_curve.h"
 #include "core/codec/zstd_body.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 namespace fieldcast::codec {
@@ -28,7 +31,7 @@ bool is_complete(const Plane& plane) {
     return plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
 }
 
-bool fits(const Plane* reference, const Plane& plane) {
+bool is_alike(const Plane* reference, const Plane& plane) {
     return reference == nullptr || (reference->format == plane.format && reference->width_px == plane.width_px &&
                                     reference->height_px == plane.height_px && is_complete(*reference));
 }
@@ -57,13 +60,69 @@ ByteFilter choose_filter(PlaneFormat format, const Rows& rows) {
     return is_temporal_cheaper ? temporal : spatial;
 }
 
+RgbSize rgb_size(BandSize size) {
+    return {size.width_px, size.row_count};
+}
+
+/// Samples of a picture, where pixels are light; kept per thread.
+std::span<std::byte> sample_scratch(BandSize size) {
+    thread_local std::vector<std::byte> samples;
+    samples.resize(rgb_size(size).bytes());
+    return samples;
+}
+
+/// False, with `strip` unchanged, if the result is not smaller than the pixels.
+bool append_jpeg(PlaneFormat format, const Rows& rows, const StripOptions& options, std::vector<std::byte>& strip) {
+    JpegQuality quality = kViewQuality;
+    std::span<const std::byte> samples = rows.pixels;
+    std::vector<std::byte> body;
+    if (format == PlaneFormat::kR11G11B10F) {
+        quality = kLightQuality;
+        const LightCurve curve = light_curve_for(rows.pixels, options.exposure);
+        const auto scratch = sample_scratch(rows.size);
+        samples_from_light(curve, rows.pixels, scratch);
+        samples = scratch;
+        std::ranges::copy(encode_curve(curve), std::back_inserter(body));
+    }
+    quality.quality = options.encoding.quality;
+    std::ranges::copy(encode_jpeg(samples, rgb_size(rows.size), quality), std::back_inserter(body));
+    if (body.size() >= rows.pixels.size()) {
+        return false;
+    }
+    strip.insert(strip.end(), body.begin(), body.end());
+    return true;
+}
+
+Decoded<void> decode_jpeg_body(PlaneFormat format, BandSize size, std::span<const std::byte> body,
+                               std::span<std::byte> pixels) {
+    if (format != PlaneFormat::kR11G11B10F) {
+        return decode_jpeg(body, rgb_size(size), pixels);
+    }
+    const auto curve = decode_curve(body);
+    if (!curve) {
+        return tl::unexpected(curve.error());
+    }
+    const auto samples = sample_scratch(size);
+    if (const auto result = decode_jpeg(body.subspan(kLightCurveBytes), rgb_size(size), samples); !result) {
+        return result;
+    }
+    light_from_samples(*curve, samples, pixels);
+    return {};
+}
+
 /// Appends the body to `strip`, which consists of an unwritten header, and says in `header` what it is.
 void append_body(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
     if (!rows.reference.empty() && std::ranges::equal(rows.pixels, rows.reference)) {
         header.coding = StripCoding::kRepeat;
         return;
     }
-    if (options.codec == CodecId::kZstdFiltered) {
+    if (options.encoding.codec == CodecId::kJpeg) {
+        header.coding = StripCoding::kJpeg;
+        if (append_jpeg(header.format, rows, options, strip)) {
+            return;
+        }
+    }
+    if (options.encoding.codec == CodecId::kZstdFiltered) {
         header.coding = StripCoding::kZstdFiltered;
         header.filter = options.filter.value_or(choose_filter(header.format, rows));
         const bool is_temporal = header.filter.predictor == Predictor::kReference;
@@ -84,6 +143,8 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
     case StripCoding::kZstdFiltered:
         return decode_zstd(header.filter, rows.size, body, is_temporal ? rows.reference : std::span<const std::byte>(),
                            pixels);
+    case StripCoding::kJpeg:
+        return decode_jpeg_body(header.format, rows.size, body, pixels);
     case StripCoding::kRepeat:
         if (!body.empty()) {
             return decode_error("strip: a repetition has no bytes");
@@ -103,15 +164,6 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
 
 } // namespace
 
-std::optional<CodecId> codec_from_number(std::uint64_t number) {
-    switch (static_cast<CodecId>(number)) {
-    case CodecId::kRaw:
-    case CodecId::kZstdFiltered:
-        return number <= 0xFF ? std::optional(static_cast<CodecId>(number)) : std::nullopt;
-    }
-    return std::nullopt;
-}
-
 std::vector<RowBand> strip_bands(std::uint32_t height_px) {
     std::vector<RowBand> bands;
     for (std::uint32_t row = 0; row < height_px; row += kStripRows) {
@@ -128,7 +180,8 @@ std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const Stri
     FC_ASSERT(is_inside(band, plane), "rows outside the plane");
     FC_ASSERT(is_complete(plane), "plane size");
     FC_ASSERT(plane.width_px <= kMaxPlaneSide && plane.height_px <= kMaxPlaneSide, "plane too large for the wire");
-    FC_ASSERT(fits(options.reference, plane), "reference of another size or format");
+    FC_ASSERT(is_alike(options.reference, plane), "reference of another size or format");
+    FC_ASSERT(fits(options.encoding.codec, plane.format), "codec does not fit the format");
     Rows rows{band_size(plane, band), rows_of(plane.bytes, plane, band), {}};
     if (options.reference != nullptr) {
         rows.reference = rows_of(options.reference->bytes, plane, band);
@@ -147,8 +200,9 @@ bool needs_reference(std::span<const std::byte> strip) {
     return header->needs_reference();
 }
 
-Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Plane* reference, Plane& plane) {
-    FC_ASSERT(is_complete(plane) && fits(reference, plane), "plane size");
+Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Announced& announced, Plane& plane) {
+    const Plane* const reference = announced.reference;
+    FC_ASSERT(is_complete(plane) && is_alike(reference, plane), "plane size");
     if (!is_inside(band, plane)) {
         return decode_error("strip: rows outside the plane");
     }
@@ -158,6 +212,10 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
     }
     if (header->format != plane.format || header->width_px != plane.width_px || header->band != band) {
         return decode_error("strip header: format, width or rows differ from what was announced");
+    }
+    if (header->coding == StripCoding::kJpeg &&
+        (announced.codec != CodecId::kJpeg || !fits(CodecId::kJpeg, plane.format))) {
+        return decode_error("strip: JPEG in a plane of another codec");
     }
     if (header->needs_reference() && reference == nullptr) {
         return decode_error("strip: refers to another frame, its frame does not");

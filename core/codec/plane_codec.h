@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/error.h"
+#include "core/codec/encoding.h"
 #include "core/codec/strip.h"
 #include "core/lightfield/plane.h"
 
@@ -13,15 +14,6 @@
 
 namespace fieldcast::codec {
 
-/// How a plane's strips become bytes. Values are on the wire: never renumber.
-enum class CodecId : std::uint8_t {
-    kRaw = 1,          ///< pixels as they are
-    kZstdFiltered = 2, ///< predictor per format, byte planes, zstd level 1; lossless
-};
-
-/// The codec with that number, or nothing.
-std::optional<CodecId> codec_from_number(std::uint64_t number);
-
 /// Rows per strip that our encoder makes (the last strip of a plane has fewer). Decoders take any number of rows.
 inline constexpr std::uint32_t kStripRows = 120;
 
@@ -32,26 +24,32 @@ std::vector<RowBand> strip_bands(std::uint32_t height_px);
 std::uint64_t max_strip_bytes(PlaneFormat format, std::uint32_t width_px, std::uint32_t row_count);
 
 struct StripOptions {
-    CodecId codec = CodecId::kZstdFiltered;
-    /// The plane that the receiver has from an earlier frame, of the same format and size; null: the strip refers to
-    /// nothing.
+    Encoding encoding{}; ///< must fit the plane's format
+    /// The plane that the receiver has from an earlier frame, of the same format and size, as it was before it was
+    /// encoded; null: the strip refers to nothing.
     const Plane* reference = nullptr;
+    float exposure = 1.0F; ///< of the frame: what multiplies light before it is shown; lossy codecs spend bits by it
     std::optional<ByteFilter> filter{}; ///< for tests and benchmarks; otherwise the cheaper one
 };
 
 /// Encodes the rows of `band`, which must lie inside `plane`. Strips are independent of each other. With a reference,
-/// equal rows become a repetition, and differences from it are sent where those are smaller than the rows' own.
+/// equal rows become a repetition, and lossless codecs send differences from it where those need fewer bits.
 /// Thread-safe: strips of one plane may be encoded in parallel. Same input, same bytes (for one version of zstd).
 std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const StripOptions& options);
 
 /// Whether a strip that we encoded needs the reference.
 bool needs_reference(std::span<const std::byte> strip);
 
+/// What a receiver knows about the strips of a plane.
+struct Announced {
+    CodecId codec = CodecId::kZstdFiltered; ///< strips may be of this kind, or lossless
+    const Plane* reference = nullptr;       ///< of the same format and size; null: strips that need one are refused
+};
+
 /// Decodes one strip into its rows of `plane`, whose format, size and `bytes` the caller has set. The strip must say
-/// exactly that format, that width and that `band`. `reference`: of the same format and size, or null, then strips that
-/// need one are refused. On failure those rows are undefined, others untouched.
+/// exactly that format, that width and that `band`. On failure those rows are undefined, others untouched.
 /// Thread-safe for different bands. Scratch memory: at most twice the band's pixels, kept per thread.
-Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Plane* reference, Plane& plane);
+Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Announced& announced, Plane& plane);
 
 /// A plane of the given size with zeroed pixels; fails without allocating beyond kMaxPlaneSide or kMaxPlaneBytes, for
 /// empty planes and for unknown formats.

@@ -25,6 +25,7 @@ std::optional<StripCoding> coding_from_number(std::uint8_t number) {
     switch (coding) {
     case StripCoding::kRaw:
     case StripCoding::kZstdFiltered:
+    case StripCoding::kJpeg:
     case StripCoding::kRepeat:
         return coding;
     }

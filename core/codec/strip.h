@@ -15,6 +15,7 @@ namespace fieldcast::codec {
 enum class StripCoding : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< byte planes of prediction errors in a zstd frame
+    kJpeg = 3,         ///< a JPEG file
     kRepeat = 5,       ///< no bytes: the pixels of the reference
 };
 

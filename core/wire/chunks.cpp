@@ -109,7 +109,7 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
         v1::PlaneHeader& entry = *message.mutable_planes()->add_planes();
         entry.set_semantic(to_proto(plane->semantic));
         entry.set_format(to_proto(plane->format));
-        entry.set_codec(to_proto(plane->codec));
+        entry.set_codec(to_proto(plane->encoding.codec));
         entry.set_width_px(plane->width_px);
         entry.set_height_px(plane->height_px);
     }
@@ -127,7 +127,7 @@ WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const Chu
     WireFrame frame = begin_frame(views.header, views.key_frame_id, options, message);
     const ViewSet set{grid, format.width_px, format.height_px, format.fovy_rad};
     to_proto(set, *message.mutable_views()->mutable_view_set());
-    message.mutable_views()->set_codec(to_proto(format.codec));
+    message.mutable_views()->set_codec(to_proto(format.encoding.codec));
     append_header(frame, std::move(message));
     std::uint32_t part = 0;
     for (const LatticePosition position : lattice_positions(grid)) {

@@ -12,8 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-EncodedPlane without_strips(const Plane& plane, codec::CodecId codec) {
-    return {plane.semantic, plane.format, codec, plane.width_px, plane.height_px, {}};
+EncodedPlane without_strips(const Plane& plane, codec::Encoding encoding) {
+    return {plane.semantic, plane.format, encoding, plane.width_px, plane.height_px, {}};
 }
 
 /// A plane to encode, what it may refer to, and where to put its strips.
@@ -21,6 +21,7 @@ struct Job {
     const Plane* plane = nullptr;
     const Plane* reference = nullptr; ///< null: none
     bool is_reference_optional = false;
+    float exposure = 1.0F;
     EncodedPlane* encoded = nullptr;
 };
 
@@ -30,7 +31,8 @@ StripBytes share(std::vector<std::byte> bytes) {
 }
 
 void encode_strip(const Job& job, EncodedStrip& strip) {
-    codec::StripOptions options{.codec = job.encoded->codec, .reference = job.reference};
+    codec::StripOptions options{
+        .encoding = job.encoded->encoding, .reference = job.reference, .exposure = job.exposure};
     strip.best = share(codec::encode_strip(*job.plane, strip.band, options));
     if (!codec::needs_reference(*strip.best.bytes)) {
         strip.alone = strip.best;
@@ -90,7 +92,7 @@ bool EncodedPlane::stands_alone() const {
 
 const EncodedPlane* EncodedSource::find(PlaneChoice choice) const {
     const auto found = std::ranges::find_if(planes, [&](const EncodedPlane& plane) {
-        return plane.semantic == choice.semantic && plane.codec == choice.codec;
+        return plane.semantic == choice.semantic && plane.encoding == choice.encoding;
     });
     return found == planes.end() ? nullptr : &*found;
 }
@@ -108,8 +110,8 @@ EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoic
         const Plane* plane = frame.find(choice.semantic);
         FC_ASSERT(plane != nullptr, "a plane was chosen that the frame does not have");
         const Plane* reference = key.source != nullptr ? key.source->find(choice.semantic) : nullptr;
-        jobs.push_back({plane, fitting(reference, *plane), key.is_optional,
-                        &source.planes.emplace_back(without_strips(*plane, choice.codec))});
+        jobs.push_back({plane, fitting(reference, *plane), key.is_optional, frame.header.settings.exposure,
+                        &source.planes.emplace_back(without_strips(*plane, choice.encoding))});
     }
     encode_all(jobs, pool);
     source.encode_time = Clock::now() - begin;
@@ -129,9 +131,9 @@ EncodedViews encode_views(const Views& views, const ViewFormat& format, const Ke
                   "view differs from its format");
         const auto [entry, is_new] = encoded.views.try_emplace(view.position);
         FC_ASSERT(is_new, "two views at one lattice position");
-        entry->second = {without_strips(view.image, format.codec), view.discards};
+        entry->second = {without_strips(view.image, format.encoding), view.discards};
         jobs.push_back({&view.image, fitting(find_view(key.views, view.position), view.image), key.is_optional,
-                        &entry->second.image});
+                        views.header.settings.exposure, &entry->second.image});
     }
     encode_all(jobs, pool);
     encoded.encode_time = Clock::now() - begin;

@@ -13,8 +13,8 @@
 
 // Encoding: once per frame, plane and codec, once per view; shared by all clients of a channel.
 //
-//     auto source = encode_source(frame, {{kDiffuse, kZstdFiltered}, {kDepth, kRaw}}, {}, pool); // union of all wishes
-//     auto views = encode_views(rendered_union, view_format, {}, pool);                          // union of all grids
+//     auto source = encode_source(frame, {{kDiffuse, {kZstdFiltered}}, {kDepth, {kRaw}}}, {}, pool); // all wishes' union
+//     auto views = encode_views(rendered_union, view_format, {}, pool);                              // all grids' union
 //
 // Both results are immutable; keep them in a shared_ptr. `chunks.h` makes a client's frame from them without copying.
 namespace fieldcast::wire {
@@ -37,7 +37,7 @@ struct EncodedStrip {
 struct EncodedPlane {
     PlaneSemantic semantic = PlaneSemantic::kColour;
     PlaneFormat format = PlaneFormat::kRgb8;
-    codec::CodecId codec = codec::CodecId::kZstdFiltered;
+    codec::Encoding encoding{};
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
     std::vector<EncodedStrip> strips; ///< from the top, without gaps
@@ -57,7 +57,7 @@ struct KeyFrame {
 /// A plane and how to encode it.
 struct PlaneChoice {
     PlaneSemantic semantic = PlaneSemantic::kColour;
-    codec::CodecId codec = codec::CodecId::kZstdFiltered;
+    codec::Encoding encoding{};
 
     auto operator<=>(const PlaneChoice&) const = default;
 };
@@ -83,7 +83,7 @@ struct ViewFormat {
     float fovy_rad = 1.0F; ///< vertical, over height_px
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
-    codec::CodecId codec = codec::CodecId::kZstdFiltered;
+    codec::Encoding encoding{};
 
     bool operator==(const ViewFormat&) const = default;
 };

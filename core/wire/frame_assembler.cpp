@@ -162,8 +162,9 @@ Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
     std::vector<Decoded<void>> results(undecoded.size());
     const auto decode_one = [&](std::size_t i) {
         const Strip& strip = undecoded[i];
+        Part& part = parts[strip.part];
         const Plane* reference = key_planes != nullptr ? &(*key_planes)[strip.part] : nullptr;
-        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, reference, parts[strip.part].plane);
+        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, {part.codec, reference}, part.plane);
     };
     if (pool != nullptr) {
         pool->for_each(undecoded.size(), decode_one);

@@ -25,18 +25,23 @@ Decoded<void> check_size(std::uint32_t width_px, std::uint32_t height_px, const 
 Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader& header) {
     const auto semantic = from_proto(message.semantic());
     const auto format = from_proto(message.format());
-    if (!semantic || !format || !from_proto(message.codec())) {
+    const auto codec = from_proto(message.codec());
+    if (!semantic || !format || !codec) {
         return decode_error("header.planes: unknown semantic, format or codec");
     }
     if (*format != wire_format(*semantic)) {
         return decode_error("header.planes: semantic " + std::to_string(message.semantic()) +
                             " is not sent in format " + std::to_string(message.format()));
     }
+    if (!codec::fits(*codec, *format)) {
+        return decode_error("header.planes: codec " + std::to_string(message.codec()) + " is not for format " +
+                            std::to_string(message.format()));
+    }
     const Camera widened = with_guard_band(header.source, header.guard_band);
     if (message.width_px() != widened.width_px || message.height_px() != plane_height(header, *semantic)) {
         return decode_error("header.planes: size differs from the source with guard band (and layers)");
     }
-    return Part{*semantic, *format, message.width_px(), message.height_px(), 0, {}};
+    return Part{*semantic, *format, message.width_px(), message.height_px(), *codec};
 }
 
 Decoded<std::vector<Part>> with_checked_total(std::vector<Part> parts, const FrameLimits& limits) {
@@ -82,13 +87,14 @@ Decoded<std::vector<Part>> parts_of_planes(const v1::PlanesHeader& message, cons
 
 Decoded<std::vector<Part>> parts_of_views(const v1::ViewsHeader& message, const ViewSet& set,
                                           const FrameLimits& limits) {
-    if (!from_proto(message.codec())) {
+    const auto codec = from_proto(message.codec());
+    if (!codec) {
         return decode_error("header.views: unknown codec");
     }
     if (const auto checked = check_size(set.width_px, set.height_px, limits); !checked) {
         return tl::unexpected(checked.error());
     }
-    const Part view{PlaneSemantic::kColour, PlaneFormat::kRgb8, set.width_px, set.height_px, 0, {}};
+    const Part view{PlaneSemantic::kColour, PlaneFormat::kRgb8, set.width_px, set.height_px, *codec};
     return with_checked_total(std::vector<Part>(set.grid.view_count(), view), limits);
 }
 

@@ -53,6 +53,7 @@ void FrameRenderer::settle_lattice() {
     info_.camera = camera_node_->name;
     info_.is_camera_animated = is_node_animated && !config_.has_fixed_camera && !config_.fixed_time_s;
     info_.max_view_pixels = config_.max_channel_pixels;
+    info_.lossy_quality = static_cast<std::uint8_t>(config_.lossy_quality);
     info_.largest_grid = config_.largest_grid;
     info_.largest_grid.geometry = config_.lattice;
     constexpr float kDefaultSpacing_m = 0.03F;

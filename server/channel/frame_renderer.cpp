@@ -58,7 +58,7 @@ std::vector<Batch> batches_of(const feed::Demand& demand) {
 } // namespace
 
 bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b) {
-    b.codec = a.codec;
+    b.encoding = a.encoding;
     return a == b;
 }
 

@@ -20,7 +20,7 @@ namespace fieldcast::channel {
 
 /// Views of one geometry and size, and the formats in which somebody wants them.
 struct RenderedViews {
-    std::vector<wire::ViewFormat> formats; ///< differ in their codec only
+    std::vector<wire::ViewFormat> formats; ///< differ in their encoding only
     Views views;
 };
 

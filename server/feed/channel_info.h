@@ -28,6 +28,7 @@ struct ChannelInfo {
     std::string camera;                                   ///< name of the camera node
     bool is_camera_animated = false;                      ///< false: it stays where it is
     std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
+    std::uint8_t lossy_quality = 75;                      ///< of planes in a lossy codec, if the client does not say
     std::uint64_t max_view_pixels = 0;                    ///< of all views of a frame, over all clients
 };
 

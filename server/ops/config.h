@@ -57,6 +57,8 @@ struct Config {
     bool has_auto_exposure = true;
     std::uint32_t seed = 1;
 
+    std::uint32_t lossy_quality = 75; ///< of planes in a lossy codec, 1 to 100, if the client does not say
+
     // Device.
     std::string traversal = "auto";
     std::string device; ///< part of its name; empty: best

@@ -137,6 +137,10 @@ void add_serving_flags(CLI::App& app, FlagText& text) {
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
+    app.add_option("--quality", config.lossy_quality, "Of planes in a lossy codec, 1 to 100, unless the client says")
+        ->group("Serving")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
     app.add_option("--metrics-listen", text.metrics_listen,
                    "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
         ->group("Serving");

@@ -11,7 +11,7 @@ void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const fee
         v1::PlaneHeader& plane = *message.add_planes();
         plane.set_semantic(wire::to_proto(choice.semantic));
         plane.set_format(wire::to_proto(wire::wire_format(choice.semantic)));
-        plane.set_codec(wire::to_proto(choice.codec));
+        plane.set_codec(wire::to_proto(choice.encoding.codec));
         plane.set_width_px(channel.source_width_px + band.left_px + band.right_px);
         plane.set_height_px((channel.source_height_px + band.top_px + band.bottom_px) * channel.source_count);
     }
@@ -21,7 +21,7 @@ void add_planes(v1::Configured& message, const feed::ViewsWish& wish, const feed
     v1::PlaneHeader& plane = *message.add_planes();
     plane.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
     plane.set_format(v1::PLANE_FORMAT_RGB8);
-    plane.set_codec(wire::to_proto(wish.format.codec));
+    plane.set_codec(wire::to_proto(wish.format.encoding.codec));
     plane.set_width_px(wish.format.width_px);
     plane.set_height_px(wish.format.height_px);
 }

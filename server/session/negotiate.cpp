@@ -137,52 +137,61 @@ Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::C
     return wire::ViewSet{.grid = *grid, .width_px = size->x, .height_px = size->y, .fovy_rad = *fovy};
 }
 
-/// The first codec wanted for that plane that we have.
-Chosen<codec::CodecId> choose_codec(const v1::Configure& wanted, PlaneSemantic semantic) {
+/// The first codec wanted for that plane that we have, at the quality wanted.
+Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemantic semantic,
+                                        const feed::ChannelInfo& channel) {
     const auto preference = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
                                               [](const v1::CodecPreference& p) { return p.semantic(); });
     if (preference == wanted.codecs().end() || preference->codecs().empty()) {
-        return codec::CodecId::kZstdFiltered;
+        return codec::Encoding{};
+    }
+    if (preference->quality() > codec::kMaxQuality) {
+        return invalid("codecs", "quality " + std::to_string(preference->quality()) + " asked, 1 to " +
+                                     std::to_string(codec::kMaxQuality) + " allowed, 0: the server's choice");
     }
     for (const int number : preference->codecs()) {
-        if (const auto codec = wire::from_proto(static_cast<v1::Codec>(number))) {
-            return *codec;
+        const auto codec = wire::from_proto(static_cast<v1::Codec>(number));
+        if (codec && codec::fits(*codec, wire::wire_format(semantic))) {
+            const auto asked = static_cast<std::uint8_t>(preference->quality());
+            const std::uint8_t quality = asked != 0 ? asked : channel.lossy_quality;
+            return codec::Encoding{*codec, codec::is_lossy(*codec) ? quality : std::uint8_t{0}};
         }
     }
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
                   "no codec asked for plane " + v1::PlaneSemantic_Name(wire::to_proto(semantic)) +
-                      " is supported; ZSTD_FILTERED and RAW are");
+                      " is supported; ZSTD_FILTERED and RAW are for every plane");
 }
 
-Chosen<feed::Wish> choose_planes(const v1::Configure& wanted) {
+Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
     constexpr std::array kAll{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
                               PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
     constexpr std::size_t kIlluminationCount = 2;
     const bool with_g_buffer = wanted.planes() == v1::PLANE_SET_WITH_G_BUFFER;
     feed::PlanesWish wish;
     for (const PlaneSemantic semantic : std::span(kAll).first(with_g_buffer ? kAll.size() : kIlluminationCount)) {
-        const auto codec = choose_codec(wanted, semantic);
-        if (!codec) {
-            return tl::unexpected(codec.error());
+        const auto encoding = choose_encoding(wanted, semantic, channel);
+        if (!encoding) {
+            return tl::unexpected(encoding.error());
         }
-        wish.choices.push_back({.semantic = semantic, .codec = *codec});
+        wish.choices.push_back({.semantic = semantic, .encoding = *encoding});
     }
     return wish;
 }
 
-Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, v1::DeliveryMode mode, const wire::ViewSet& set) {
+Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, const feed::ChannelInfo& channel, v1::DeliveryMode mode,
+                               const wire::ViewSet& set) {
     if (mode == v1::DELIVERY_MODE_SCENE) {
-        return choose_planes(wanted);
+        return choose_planes(wanted, channel);
     }
-    const auto codec = choose_codec(wanted, PlaneSemantic::kColour);
-    if (!codec) {
-        return tl::unexpected(codec.error());
+    const auto encoding = choose_encoding(wanted, PlaneSemantic::kColour, channel);
+    if (!encoding) {
+        return tl::unexpected(encoding.error());
     }
     return feed::ViewsWish{.format = {.geometry = set.grid.geometry,
                                       .fovy_rad = set.fovy_rad,
                                       .width_px = set.width_px,
                                       .height_px = set.height_px,
-                                      .codec = *codec},
+                                      .encoding = *encoding},
                            .grid = set.grid};
 }
 
@@ -219,7 +228,7 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Chan
     if (!view_set) {
         return tl::unexpected(view_set.error());
     }
-    auto wish = choose_wish(wanted, *mode, *view_set);
+    auto wish = choose_wish(wanted, info, *mode, *view_set);
     if (!wish) {
         return tl::unexpected(wish.error());
     }

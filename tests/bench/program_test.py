@@ -90,6 +90,27 @@ class Program(unittest.TestCase):
     def headings(self, name):
         return Outline((self.folder / name).read_text(encoding="utf-8")).headings
 
+    def test_codecs(self):
+        done = call("codecs", *SIZE, "--frames", 3, "--measured", 2, "--qualities", "30,90", "--json",
+                    self.folder / "codecs.json", "--csv", self.folder / "codecs.csv")
+        self.assertEqual(0, done.returncode, done.stderr)
+        rows = {(row["part"], row["coding"]): row for row in self.table("codecs.csv")}
+        parts = ["diffuse", "specular", "light", "depth", "normal", "id", "material", "view"]
+        lossless = {(part, coding) for part in parts for coding in ("raw", "zstd", "zstd, key frame")}
+        lossy = {(part, f"jpeg {quality}") for part in ("diffuse", "specular", "light", "view") for quality in (30, 90)}
+        self.assertEqual(lossless | lossy, set(rows))
+        number = lambda part, coding, column: float(rows[part, coding][column])
+        for part in ("light", "view"):
+            self.assertLess(number(part, "jpeg 30", "bytes"), number(part, "jpeg 90", "bytes"))
+            self.assertLess(number(part, "jpeg 90", "bytes"), number(part, "raw", "bytes"))
+            self.assertLess(number(part, "jpeg 30", "ssim"), number(part, "jpeg 90", "ssim"))
+            self.assertLess(number(part, "jpeg 90", "ssim"), 1.0)
+            self.assertEqual("", rows[part, "zstd"]["ssim"])
+        self.assertEqual(0.0, number("light", "jpeg 30", "discard_points"))  # geometry is what discards
+        light = number("diffuse", "zstd", "bytes") + number("specular", "zstd", "bytes")
+        self.assertAlmostEqual(light, number("light", "zstd", "bytes"), delta=light * 1e-4)  # the CSV has six digits
+        self.expect_user_error(call("codecs", *SIZE, "--frames", 1, "--measured", 2), "--measured")
+
     def test_quality_with_everything(self):
         out = self.folder / "out"
         done = call("quality", *self.references, "--presets", "ours", "--temporal", "--light-field", "--out", out,

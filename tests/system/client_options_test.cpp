@@ -63,13 +63,21 @@ TEST(Options, UnsetValuesAreLeftToTheChannel) {
     EXPECT_EQ(wish.fovy_rad, 0.0F);
 }
 
+TEST(Options, CodecsKeepTheirOrder) {
+    const Invocation invocation = read({"--codec", "jpeg,zstd", "--quality", "40"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    EXPECT_THAT(invocation.options->play.wish.codecs,
+                testing::ElementsAre(codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered));
+    EXPECT_EQ(invocation.options->play.wish.quality, 40);
+}
+
 TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {
     const std::vector<std::vector<const char*>> wrong{
         {"--grid", "9x9"},        {"--grid", "x"},    {"--size", "640"},  {"--size", "0x5"},
         {"--mode", "magic"},      {"--write", "exr"},                                             // needs mode scene
         {"--fov", "180"},         {"--save", "some"}, {"--frames", "-1"}, {"--tls-ca", "ca.pem"}, // needs --tls
         {"--tls-cert", "c.pem"},                                                                  // needs --tls-key
-        {"--server", "ftp://h:1"}};
+        {"--server", "ftp://h:1"}, {"--codec", "gif"}, {"--quality", "0"}, {"--quality", "101"}};
     for (const auto& arguments : wrong) {
         const Invocation invocation = read(arguments);
         EXPECT_FALSE(invocation.options) << arguments[0] << ' ' << arguments[1];

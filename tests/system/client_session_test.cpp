@@ -141,6 +141,22 @@ TEST_F(SessionTest, EndsWhenAnotherGridIsGranted) {
     EXPECT_THAT(ended->error.what(), HasSubstr("another grid"));
 }
 
+TEST_F(SessionTest, EndsWhenALossyCodecIsGrantedThatWasNotAskedFor) {
+    open([](FakeCall& call, int) {
+        const auto configure = call.read_until(v1::ClientMessage::kConfigure);
+        ASSERT_EQ(configure->configure().codecs_size(), 1); // of views, whose only plane is COLOUR
+        v1::ServerMessage message = configured_message(configure->configure());
+        v1::PlaneHeader& plane = *message.mutable_configured()->add_planes();
+        plane.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+        plane.set_codec(v1::CODEC_JPEG);
+        call.send(message);
+        call.read_rest();
+    });
+    const auto ended = next<Ended>();
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->error.what(), HasSubstr("codec that was not asked for"));
+}
+
 TEST_F(SessionTest, EndsWhenGrantedFramesAreTooLarge) {
     Wish wish = small_wish();
     wish.rows = 8;

@@ -14,7 +14,7 @@ protected:
     RenderedFrame still_frame() {
         RenderedFrame frame;
         frame.header.frame_id = ++frame_id_;
-        frame.choices = {{.semantic = PlaneSemantic::kDepth, .codec = codec::CodecId::kZstdFiltered}};
+        frame.choices = {{.semantic = PlaneSemantic::kDepth, .encoding = {}}};
         frame.source = SourceFrame{frame.header, {plane(PlaneSemantic::kDepth, PlaneFormat::kF32)}};
         frame.views.push_back({.formats = {format_}, .views = {.header = frame.header, .views = {}}});
         for (const LatticePosition position : lattice_positions(grid_)) {

@@ -138,9 +138,35 @@ TEST_F(Negotiate, ChoosesPlanesAndCodecs) {
     ASSERT_TRUE(answer.has_value());
     const auto& planes = std::get<feed::PlanesWish>(answer->wish).choices;
     ASSERT_EQ(planes.size(), 6U);
-    EXPECT_EQ(planes[0].codec, codec::CodecId::kZstdFiltered);
+    EXPECT_EQ(planes[0].encoding.codec, codec::CodecId::kZstdFiltered);
     EXPECT_EQ(planes[2].semantic, PlaneSemantic::kDepth);
-    EXPECT_EQ(planes[2].codec, codec::CodecId::kRaw);
+    EXPECT_EQ(planes[2].encoding.codec, codec::CodecId::kRaw);
+}
+
+TEST_F(Negotiate, ChoosesTheFirstCodecThatFitsThePlane) {
+    const auto prefer = [this](v1::PlaneSemantic semantic, std::uint32_t quality) {
+        v1::CodecPreference& preference = *wanted_.add_codecs();
+        preference.set_semantic(semantic);
+        preference.set_quality(quality);
+        preference.add_codecs(v1::CODEC_JPEG);
+        preference.add_codecs(v1::CODEC_RAW);
+    };
+    prefer(v1::PLANE_SEMANTIC_COLOUR, 0);
+    const auto format = [](const Configuration& chosen) { return std::get<feed::ViewsWish>(chosen.wish).format; };
+    EXPECT_EQ(format(*ask()).encoding, (codec::Encoding{codec::CodecId::kJpeg, 75}));
+    wanted_.mutable_codecs(0)->set_quality(40);
+    EXPECT_EQ(format(*ask()).encoding, (codec::Encoding{codec::CodecId::kJpeg, 40}));
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
+    prefer(v1::PLANE_SEMANTIC_DEPTH, 60);
+    prefer(v1::PLANE_SEMANTIC_DIFFUSE, 60);
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[0].encoding,
+              (codec::Encoding{codec::CodecId::kJpeg, 60}));
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[1].encoding, codec::Encoding{});
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[2].encoding, (codec::Encoding{codec::CodecId::kRaw, 0}));
+    prefer(v1::PLANE_SEMANTIC_NORMAL, 101);
+    EXPECT_EQ(refusal().field, "codecs");
+    EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_INVALID);
 }
 
 TEST_F(Negotiate, RefusesUnknownCodecsAlone) {

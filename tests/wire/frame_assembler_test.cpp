@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/wire/frame_assembler.h"
 
+#include "core/codec/light_curve.h"
 #include "tests/wire/test_frames.h"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,6 +64,28 @@ TEST_F(FrameAssemblerTest, RestoresSourceFrames) {
             EXPECT_EQ((*added)->header().frame_id, frame_id);
             EXPECT_GT((*added)->payload_bytes, 0U);
         }
+    }
+}
+
+TEST_F(FrameAssemblerTest, LossyLightArrivesBesideLosslessPlanes) {
+    SourceFrame sent = test_source(4);
+    Plane& light = sent.planes.front();
+    light = light_plane(light.width_px, light.height_px);
+    std::vector<PlaneChoice> choices = all_choices();
+    choices.front().encoding = {codec::CodecId::kJpeg, 90};
+    const EncodedSource source = encode_source(sent, choices, {}, pool_);
+    const auto& strip = *source.find(choices.front())->strips.front().best.bytes;
+    const auto curve = codec::decode_curve(std::span(strip).subspan(codec::kStripHeaderBytes));
+    ASSERT_TRUE(curve);
+    const auto rows = std::span(light.bytes).first(std::size_t{4} * light.width_px * codec::kStripRows);
+    EXPECT_EQ(*curve, codec::light_curve_for(rows, sent.header.settings.exposure));
+    const auto added = add_all(assembler_, all_chunks(source_chunks(source, choices, {.epoch = 3}), times_));
+    ASSERT_TRUE(added) << added.error().message;
+    const auto& frame = std::get<SourceFrame>((*added)->content);
+    EXPECT_TRUE(std::equal(frame.planes.begin() + 1, frame.planes.end(), sent.planes.begin() + 1));
+    for (std::size_t i = 0; i < std::size_t{light.width_px} * light.height_px; ++i) {
+        const int green = green_bits(light, i);
+        EXPECT_NEAR(green_bits(frame.planes.front(), i), green, green == 0 ? 512 : 64) << i; // 64: an octave
     }
 }
 
@@ -132,7 +156,7 @@ TEST_F(FrameAssemblerTest, DamagedPayloadFailsAndTheNextFrameIsFine) {
 }
 
 TEST_F(FrameAssemblerTest, RawDamageIsCaughtByTheCrc) {
-    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, codec::CodecId::kRaw}};
+    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {codec::CodecId::kRaw}}};
     const EncodedSource source = encode_source(test_source(1), choices, {}, pool_);
     auto chunks = all_chunks(source_chunks(source, choices, {.epoch = 3}));
     chunks[1].mutable_payload()->back() ^= 1;

@@ -24,7 +24,7 @@ void expect_golden(PlaneFormat format, const std::string& codec) {
     std::fill_n(decoded.bytes.begin() + static_cast<std::ptrdiff_t>(3 * row_bytes), 15 * row_bytes, std::byte{0});
     const auto strip = read_bytes("tests/data/wire/v1/" + name_of(format) + "_" + codec + ".strip");
     const Plane reference = codec == "repeat" ? expected : ramp_plane(format, 33, 20, 1);
-    const auto result = decode_strip(strip, band, &reference, decoded);
+    const auto result = decode_strip(strip, band, {.reference = &reference}, decoded);
     ASSERT_TRUE(result) << name_of(format) << ": " << result.error().message;
     EXPECT_TRUE(decoded == expected) << name_of(format);
 }
@@ -47,6 +47,38 @@ TEST(GoldenStrips, Version1FiltersDecode) {
         expect_golden(format, "reference");
         expect_golden(format, "repeat");
     }
+}
+
+TEST(GoldenStrips, Version1JpegDecodes) {
+    const Plane expected = ramp_plane(PlaneFormat::kRgb8, 33, 20);
+    Plane decoded = expected;
+    std::fill_n(decoded.bytes.begin() + 3 * 99, 15 * 99, std::byte{0});
+    const auto result =
+        decode_strip(read_bytes("tests/data/wire/v1/rgb8_jpeg.strip"), {3, 15}, {.codec = CodecId::kJpeg}, decoded);
+    ASSERT_TRUE(result) << result.error().message;
+    int largest = 0;
+    for (std::size_t i = 0; i < decoded.bytes.size(); ++i) {
+        const int difference = std::to_integer<int>(decoded.bytes[i]) - std::to_integer<int>(expected.bytes[i]);
+        largest = std::max(largest, std::abs(difference));
+    }
+    EXPECT_LE(largest, 16); // measured 12: steps of 2.2 and more in 64 coefficients of Y, 6.6 and more in Cb and Cr
+    EXPECT_GT(largest, 0);  // it is not lossless
+}
+
+TEST(GoldenStrips, Version1JpegOfLightDecodes) {
+    const Plane expected = light_plane(33, 20);
+    Plane decoded = expected;
+    std::fill_n(decoded.bytes.begin() + 3 * 132, 15 * 132, std::byte{0});
+    const auto strip = read_bytes("tests/data/wire/v1/r11g11b10f_jpeg.strip");
+    const auto result = decode_strip(strip, {3, 15}, {.codec = CodecId::kJpeg}, decoded);
+    ASSERT_TRUE(result) << result.error().message;
+    int largest = 0;
+    for (std::size_t i = 0; i < 33 * 20; ++i) {
+        const int green = green_bits(expected, i);
+        largest = green != 0 ? std::max(largest, std::abs(green_bits(decoded, i) - green)) : largest;
+    }
+    EXPECT_LE(largest, 24); // of 64 to an octave
+    EXPECT_GT(largest, 0);
 }
 
 TEST(GoldenStrips, EncoderStillWritesTheSameHeaders) {
@@ -75,7 +107,7 @@ protected:
 TEST_F(WorkedExample, RawStrip) {
     const auto expected = bytes_of(std::to_array<std::uint8_t>(
         {1, 1, 5, 0, 0, 0, 2, 0, 0, 0, 2, 0, 8, 0, 0, 0, 10, 200, 12, 201, 11, 200, 14, 203}));
-    EXPECT_EQ(encode_strip(plane_, {0, 2}, {.codec = CodecId::kRaw}), expected);
+    EXPECT_EQ(encode_strip(plane_, {0, 2}, {.encoding = {CodecId::kRaw}}), expected);
 }
 
 TEST_F(WorkedExample, FilteredBytes) {
@@ -92,7 +124,7 @@ TEST_F(WorkedExample, ZstdStripWithStoredBlock) {
         {1,    2,    5,    2,    1,    0, 2,    0, 0, 0,  2, 0, 17, 0,   0, 0,       // strip header
          0x28, 0xB5, 0x2F, 0xFD, 0x20, 8, 0x41, 0, 0, 10, 2, 1, 1,  200, 1, 0, 2})); // zstd frame
     Plane decoded = empty_plane(PlaneFormat::kRg8, 2, 2);
-    const auto result = decode_strip(strip, {0, 2}, nullptr, decoded);
+    const auto result = decode_strip(strip, {0, 2}, {}, decoded);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(decoded.bytes, plane_.bytes);
 }

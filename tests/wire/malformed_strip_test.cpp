@@ -18,6 +18,8 @@ constexpr RowBand kBand{3, 15};
 struct MalformedFile {
     const char* name;
     const char* error;
+    CodecId announced = CodecId::kZstdFiltered;
+    PlaneFormat format = PlaneFormat::kRgb8;
 };
 
 TEST(MalformedStrip, FilesGiveTheNamedError) {
@@ -45,11 +47,18 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
         {"cut_frame", "not exactly one zstd frame"},
         {"huge_content", "does not declare"},
         {"other_content", "does not declare"},
+        {"jpeg_filter", "only ZSTD_FILTERED has a filter"},
+        {"jpeg_in_zstd_plane", "JPEG in a plane of another codec"},
+        {"jpeg_cut", "damaged", CodecId::kJpeg},
+        {"light_no_curve", "without its curve", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_no_picture", "JPEG", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_negative_knee", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_infinite_top", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
     };
     for (const MalformedFile& file : files) {
-        Plane plane = empty_plane(PlaneFormat::kRgb8, 33, 20);
+        Plane plane = empty_plane(file.format, 33, 20);
         const auto strip = read_bytes("tests/data/wire/v1/malformed/" + std::string(file.name) + ".strip");
-        const auto result = decode_strip(strip, kBand, nullptr, plane);
+        const auto result = decode_strip(strip, kBand, {.codec = file.announced}, plane);
         ASSERT_FALSE(result) << file.name;
         EXPECT_THAT(result.error().message, HasSubstr(file.error)) << file.name;
     }
@@ -58,8 +67,8 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
 TEST(MalformedStrip, RepetitionsHaveNoBytes) {
     const Plane reference = ramp_plane(PlaneFormat::kRgb8, 33, 20);
     Plane plane = empty_plane(PlaneFormat::kRgb8, 33, 20);
-    const auto result =
-        decode_strip(read_bytes("tests/data/wire/v1/malformed/repeat_body.strip"), kBand, &reference, plane);
+    const auto result = decode_strip(read_bytes("tests/data/wire/v1/malformed/repeat_body.strip"), kBand,
+                                     {.reference = &reference}, plane);
     ASSERT_FALSE(result);
     EXPECT_THAT(result.error().message, HasSubstr("has no bytes"));
 }
@@ -68,11 +77,11 @@ TEST(MalformedStrip, EveryTruncationIsRefused) {
     for (const PlaneFormat format : kAllFormats) {
         const Plane plane = ramp_plane(format, 33, 20);
         for (const CodecId codec : {CodecId::kRaw, CodecId::kZstdFiltered}) {
-            const auto strip = encode_strip(plane, kBand, {.codec = codec});
+            const auto strip = encode_strip(plane, kBand, {.encoding = {codec}});
             Plane decoded = empty_plane(format, 33, 20);
             for (std::size_t size = 0; size < strip.size(); ++size) {
                 const std::vector<std::byte> cut(strip.begin(), strip.begin() + static_cast<std::ptrdiff_t>(size));
-                EXPECT_FALSE(decode_strip(cut, kBand, nullptr, decoded)) << name_of(format) << " cut to " << size;
+                EXPECT_FALSE(decode_strip(cut, kBand, {}, decoded)) << name_of(format) << " cut to " << size;
             }
         }
     }
@@ -80,10 +89,10 @@ TEST(MalformedStrip, EveryTruncationIsRefused) {
 
 TEST(MalformedStrip, RefusesRowsOutsideThePlane) {
     const Plane plane = ramp_plane(PlaneFormat::kRgb8, 33, 20);
-    const auto strip = encode_strip(plane, kBand, {.codec = CodecId::kRaw});
+    const auto strip = encode_strip(plane, kBand, {.encoding = {CodecId::kRaw}});
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
     for (const RowBand band : {RowBand{20, 1}, RowBand{6, 15}, RowBand{0, 0}, RowBand{0xFFFFFFFF, 2}}) {
-        EXPECT_FALSE(decode_strip(strip, band, nullptr, decoded));
+        EXPECT_FALSE(decode_strip(strip, band, {}, decoded));
     }
 }
 
@@ -100,7 +109,7 @@ TEST(MalformedStrip, RandomDamageNeverReachesOtherRows) {
             for (auto flips = 1 + random() % 4; flips > 0; --flips) {
                 damaged[random() % damaged.size()] ^= static_cast<std::byte>(1U << random() % 8);
             }
-            static_cast<void>(decode_strip(damaged, kBand, &reference, decoded));
+            static_cast<void>(decode_strip(damaged, kBand, {.reference = &reference}, decoded));
         }
         for (std::size_t i = 0; i < decoded.bytes.size(); ++i) {
             if (i / row_bytes < 3 || i / row_bytes >= 18) {
@@ -118,7 +127,7 @@ TEST(MalformedStrip, RandomBytesAreRefused) {
         for (std::byte& byte : bytes) {
             byte = static_cast<std::byte>(random());
         }
-        EXPECT_FALSE(decode_strip(bytes, {0, 16}, nullptr, decoded));
+        EXPECT_FALSE(decode_strip(bytes, {0, 16}, {}, decoded));
     }
 }
 

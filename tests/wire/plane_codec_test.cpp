@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
+#include "core/codec/light_curve.h"
 
 #include "tests/wire/test_planes.h"
 
@@ -21,9 +22,9 @@ protected:
     void expect_round_trip(const Plane& plane, const std::string& what) const {
         Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
         for (const RowBand band : strip_bands(plane.height_px)) {
-            const auto strip = encode_strip(plane, band, {.codec = codec()});
+            const auto strip = encode_strip(plane, band, {.encoding = {codec()}});
             EXPECT_LE(strip.size(), max_strip_bytes(plane.format, plane.width_px, band.row_count)) << what;
-            const auto result = decode_strip(strip, band, nullptr, decoded);
+            const auto result = decode_strip(strip, band, {}, decoded);
             ASSERT_TRUE(result) << what << ": " << result.error().message;
         }
         EXPECT_TRUE(decoded == plane) << what;
@@ -50,7 +51,7 @@ TEST_P(EveryCodec, StripsAreIndependent) {
     const RowBand band{120, 120};
     Plane decoded = empty_plane(format(), 40, 300);
     ASSERT_TRUE(
-        decode_strip(encode_strip(plane, band, {.codec = codec()}), band, nullptr, decoded)); // the others never arrive
+        decode_strip(encode_strip(plane, band, {.encoding = {codec()}}), band, {}, decoded)); // the others never arrive
     const std::size_t row_bytes = 40 * bytes_per_pixel(format());
     for (std::size_t i = 0; i < plane.bytes.size(); ++i) {
         const bool is_inside = i / row_bytes >= 120 && i / row_bytes < 240;
@@ -62,13 +63,14 @@ TEST_P(EveryCodec, TakesAnyNumberOfRows) {
     const Plane plane = ramp_plane(format(), 9, 50);
     for (const RowBand band : {RowBand{0, 50}, RowBand{3, 1}, RowBand{49, 1}, RowBand{7, 31}}) {
         Plane decoded = empty_plane(format(), 9, 50);
-        EXPECT_TRUE(decode_strip(encode_strip(plane, band, {.codec = codec()}), band, nullptr, decoded));
+        EXPECT_TRUE(decode_strip(encode_strip(plane, band, {.encoding = {codec()}}), band, {}, decoded));
     }
 }
 
 TEST_P(EveryCodec, SameInputSameBytes) {
     const Plane plane = ramp_plane(format(), 50, 60);
-    EXPECT_EQ(encode_strip(plane, {0, 60}, {.codec = codec()}), encode_strip(plane, {0, 60}, {.codec = codec()}));
+    EXPECT_EQ(encode_strip(plane, {0, 60}, {.encoding = {codec()}}),
+              encode_strip(plane, {0, 60}, {.encoding = {codec()}}));
 }
 
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
@@ -101,16 +103,16 @@ protected:
     /// The coding of the strip, after a round trip.
     static StripHeader encode(const Plane& plane, const Plane& reference, CodecId codec = CodecId::kZstdFiltered) {
         const RowBand band{0, plane.height_px};
-        const auto strip = encode_strip(plane, band, {.codec = codec, .reference = &reference});
+        const auto strip = encode_strip(plane, band, {.encoding = {codec}, .reference = &reference});
         Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
-        const auto result = decode_strip(strip, band, &reference, decoded);
+        const auto result = decode_strip(strip, band, {.reference = &reference}, decoded);
         EXPECT_TRUE(result) << result.error().message;
         EXPECT_TRUE(decoded == plane);
         const auto header = read_header(strip);
         EXPECT_TRUE(header);
         EXPECT_EQ(needs_reference(strip), header->needs_reference());
         if (header->needs_reference()) {
-            EXPECT_FALSE(decode_strip(strip, band, nullptr, decoded));
+            EXPECT_FALSE(decode_strip(strip, band, {}, decoded));
         }
         return *header;
     }
@@ -148,6 +150,63 @@ std::string format_name(const ::testing::TestParamInfo<PlaneFormat>& info) {
 
 INSTANTIATE_TEST_SUITE_P(PlaneCodec, Referring, ::testing::ValuesIn(kAllFormats), format_name);
 
+TEST(PlaneCodec, JpegFallsBackToRawWhereItIsLarger) {
+    const Plane plane = random_plane(PlaneFormat::kRgb8, 4, 4); // 48 bytes; the tables of a JPEG alone are larger
+    const auto strip = encode_strip(plane, {0, 4}, {.encoding = {CodecId::kJpeg, 75}});
+    EXPECT_EQ(strip[1], static_cast<std::byte>(StripCoding::kRaw));
+    Plane decoded = empty_plane(PlaneFormat::kRgb8, 4, 4);
+    ASSERT_TRUE(decode_strip(strip, {0, 4}, {.codec = CodecId::kJpeg}, decoded));
+    EXPECT_TRUE(decoded == plane);
+}
+
+TEST(PlaneCodec, JpegRepeatsWhatTheReceiverHas) {
+    const Plane sent = ramp_plane(PlaneFormat::kRgb8, 64, 48);
+    const RowBand band{0, 48};
+    const auto first = encode_strip(sent, band, {.encoding = {CodecId::kJpeg, 75}});
+    EXPECT_EQ(first[1], static_cast<std::byte>(StripCoding::kJpeg));
+    Plane received = empty_plane(PlaneFormat::kRgb8, 64, 48);
+    ASSERT_TRUE(decode_strip(first, band, {.codec = CodecId::kJpeg}, received));
+    const auto second = encode_strip(sent, band, {.encoding = {CodecId::kJpeg, 75}, .reference = &sent});
+    EXPECT_EQ(second.size(), kStripHeaderBytes);
+    Plane again = empty_plane(PlaneFormat::kRgb8, 64, 48);
+    ASSERT_TRUE(decode_strip(second, band, {.codec = CodecId::kJpeg, .reference = &received}, again));
+    EXPECT_TRUE(again == received);
+}
+
+TEST(PlaneCodec, JpegTakesLight) {
+    const Plane plane = light_plane(96, 48);
+    const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = 2.0F});
+    EXPECT_EQ(strip[1], static_cast<std::byte>(StripCoding::kJpeg));
+    EXPECT_LT(strip.size(), plane.bytes.size() / 4);
+    Plane decoded = empty_plane(plane.format, 96, 48);
+    const auto result = decode_strip(strip, {0, 48}, {.codec = CodecId::kJpeg}, decoded);
+    ASSERT_TRUE(result) << result.error().message;
+    double error = 0.0;
+    for (std::size_t i = 0; i < 96 * 48; ++i) {
+        const int green = green_bits(plane, i);
+        error += green != 0 ? std::abs(green_bits(decoded, i) - green) : 0.0;
+    }
+    // Bits of the float: 64 are an octave. Steps of 2 in samples are about a tenth of an octave each here.
+    EXPECT_LT(error / (96.0 * 48.0), 6.0);
+}
+
+TEST(PlaneCodec, BrighterExposureSpendsMoreOnDarkLight) {
+    const Plane plane = light_plane(96, 48);
+    const auto knee = [&](float exposure) {
+        const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = exposure});
+        return decode_curve(std::span(strip).subspan(kStripHeaderBytes))->knee;
+    };
+    EXPECT_FLOAT_EQ(knee(1.0F) / knee(8.0F), 8.0F);
+}
+
+TEST(PlaneCodec, JpegIsForPicturesAndLight) {
+    for (const PlaneFormat format : kAllFormats) {
+        const bool is_picture = format == PlaneFormat::kRgb8 || format == PlaneFormat::kR11G11B10F;
+        EXPECT_EQ(fits(CodecId::kJpeg, format), is_picture) << name_of(format);
+        EXPECT_TRUE(fits(CodecId::kZstdFiltered, format) && fits(CodecId::kRaw, format));
+    }
+}
+
 TEST(PlaneCodec, StripBandsCoverEveryRow) {
     EXPECT_EQ(strip_bands(720).size(), 6U);
     EXPECT_EQ(strip_bands(1), (std::vector<RowBand>{{0, 1}}));
@@ -171,7 +230,8 @@ TEST(PlaneCodec, RefusesToAllocateOversizedPlanes) {
 TEST(PlaneCodec, KnowsItsNumbers) {
     EXPECT_EQ(codec_from_number(1), CodecId::kRaw);
     EXPECT_EQ(codec_from_number(2), CodecId::kZstdFiltered);
-    for (const std::uint64_t number : {0ULL, 3ULL, 255ULL, 257ULL, 1ULL << 40}) {
+    EXPECT_EQ(codec_from_number(3), CodecId::kJpeg);
+    for (const std::uint64_t number : {0ULL, 5ULL, 255ULL, 257ULL, 1ULL << 40}) {
         EXPECT_FALSE(codec_from_number(number)) << number;
     }
 }

@@ -47,7 +47,7 @@ inline SourceFrame test_source(std::uint64_t frame_id) {
 inline std::vector<wire::PlaneChoice> all_choices() {
     std::vector<wire::PlaneChoice> choices;
     for (const PlaneFormat format : kAllFormats) {
-        choices.push_back({semantic_of(format), codec::CodecId::kZstdFiltered});
+        choices.push_back({semantic_of(format), {codec::CodecId::kZstdFiltered}});
     }
     return choices;
 }

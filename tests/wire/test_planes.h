@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <string>
 
@@ -62,6 +63,26 @@ inline Plane random_plane(PlaneFormat format, std::uint32_t width_px, std::uint3
         byte = static_cast<std::byte>(random());
     }
     return plane;
+}
+
+/// Soft light with a hard edge: kR11G11B10F, from 0 to about 30.
+inline Plane light_plane(std::uint32_t width_px, std::uint32_t height_px) {
+    Plane plane = empty_plane(PlaneFormat::kR11G11B10F, width_px, height_px);
+    for (std::uint32_t i = 0; i < width_px * height_px; ++i) {
+        const std::uint32_t x = i % width_px;
+        const std::uint32_t y = i / width_px;
+        const std::uint32_t bits = x < width_px / 3 ? 0 : 640 + 8 * (x % 40) + 4 * (y % 20); // 1/32 and up
+        const std::uint32_t pixel = bits | bits << 11 | bits / 2 << 22;
+        std::memcpy(&plane.bytes[std::size_t{4} * i], &pixel, sizeof pixel);
+    }
+    return plane;
+}
+
+/// Green of a pixel of a kR11G11B10F plane: 64 are an octave.
+inline int green_bits(const Plane& plane, std::size_t pixel) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &plane.bytes[4 * pixel], sizeof word);
+    return static_cast<int>(word >> 11 & 0x7FF);
 }
 
 /// Compressible, and the same on every machine for ever: byte b of pixel (x, y) is 3x + 5y + 7b + (0 or 1).

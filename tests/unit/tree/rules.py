@@ -24,6 +24,7 @@ SHADER_USERS = ("core/scene", "core/render", "core/gpu", "bench")  # structs sha
 LIBRARIES = {
     "vulkan/": ("core/gpu",),
     "zstd": ("core/codec",),
+    "jpeglib": ("core/codec",),
     "OpenImageIO/": ("core/image",),
     "webp/": ("core/image",),
     "zlib": ("core/image",),

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/codecs_run.h"
+
+#include "bench/interrupt.h"
+#include "bench/progress.h"
+#include "core/image/metrics.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace fieldcast::bench {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kLight = "light";
+constexpr const char* kView = "view";
+
+const char* name_of(PlaneSemantic semantic) {
+    switch (semantic) {
+    case PlaneSemantic::kDiffuse:
+        return "diffuse";
+    case PlaneSemantic::kSpecular:
+        return "specular";
+    case PlaneSemantic::kDepth:
+        return "depth";
+    case PlaneSemantic::kNormal:
+        return "normal";
+    case PlaneSemantic::kId:
+        return "id";
+    case PlaneSemantic::kMaterial:
+        return "material";
+    case PlaneSemantic::kColour:
+        break;
+    }
+    return kView;
+}
+
+bool is_light(PlaneSemantic semantic) {
+    return semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
+}
+
+/// The corners of a grid, and a view within.
+std::vector<LatticePosition> chosen_positions(const ViewGrid& grid) {
+    const std::uint32_t bottom = grid.rows - 1;
+    const std::uint32_t right = grid.cols - 1;
+    std::vector<LatticePosition> positions;
+    for (const auto& [row, col] : {std::pair(0U, 0U), std::pair(0U, right), std::pair(bottom / 2, grid.cols / 2),
+                                   std::pair(bottom, 0U), std::pair(bottom, right)}) {
+        const LatticePosition position = lattice_position(grid, row, col);
+        if (std::ranges::find(positions, position) == positions.end()) {
+            positions.push_back(position);
+        }
+    }
+    return positions;
+}
+
+RenderSettings render_settings(const LightFieldScene& scene, const CodecsSettings& settings) {
+    RenderSettings render;
+    render.exposure = settings.exposure;
+    render.holes = parse_holes("all", scene.grid());
+    return render;
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double discard_share(const Views& views) {
+    double discards = 0.0;
+    double pixels = 0.0;
+    for (const View& view : views.views) {
+        discards += view.discards.total();
+        pixels += static_cast<double>(view.image.width_px) * view.image.height_px;
+    }
+    return discards / pixels;
+}
+
+} // namespace
+
+CodecsRun::CodecsRun(const gpu::Device& device, LightFieldScene& scene, const CodecsSettings& settings)
+    : scene_(scene), settings_(settings), codings_(all_codings(settings.qualities)),
+      positions_(chosen_positions(scene.grid())), run_(device, scene, render_settings(scene, settings), true),
+      planes_(device), surfaces_(device, scene.gpu_scene()), uncoded_(device, scene.gpu_scene()) {
+    for (const Coding& coding : codings_) {
+        const bool is_lossy = codec::is_lossy(coding.encoding.codec);
+        renderers_.push_back(is_lossy ? std::make_unique<render::GridRenderer>(device, scene.gpu_scene()) : nullptr);
+    }
+}
+
+void CodecsRun::run() {
+    const InterruptGuard interrupt;
+    Progress progress("frames", settings_.frames);
+    for (std::uint32_t frame = 0; frame < settings_.frames; ++frame) {
+        scene_.pose(frame);
+        run_.render(frame, {LatticePosition{}}); // for its source
+        const SourceFrame source = run_.source().download(render::kSourceSemantics);
+        if (frame + settings_.measured >= settings_.frames) {
+            measure(source);
+        }
+        before_ = source;
+        progress.add(1.0);
+        if (interrupt.is_interrupted()) {
+            throw Interrupted{"no results were written"};
+        }
+    }
+}
+
+void CodecsRun::measure(const SourceFrame& frame) {
+    const Views uncoded = make_views(uncoded_, frame);
+    for (std::size_t i = 0; i < codings_.size(); ++i) {
+        const SourceFrame decoded = measure_planes(frame, codings_[i]);
+        if (renderers_[i]) {
+            compare(make_views(*renderers_[i], decoded), uncoded, samples(kLight, codings_[i]));
+        }
+        measure_views(uncoded, codings_[i]);
+    }
+    views_before_ = uncoded;
+}
+
+SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& coding) {
+    SourceFrame decoded = frame;
+    CodedPlane light;
+    for (Plane& plane : decoded.planes) {
+        if (!codec::fits(coding.encoding.codec, plane.format)) {
+            continue;
+        }
+        CodedPlane coded = code_plane(plane, coding, before_.find(plane.semantic), frame.header.settings.exposure);
+        samples(name_of(plane.semantic), coding).add(coded);
+        if (is_light(plane.semantic)) {
+            light.bytes += coded.bytes;
+            light.encode_ms += coded.encode_ms;
+            light.decode_ms += coded.decode_ms;
+        }
+        plane = std::move(coded.decoded);
+    }
+    samples(kLight, coding).add(light);
+    return decoded;
+}
+
+void CodecsRun::measure_views(const Views& views, const Coding& coding) {
+    for (std::size_t i = 0; i < views.views.size(); ++i) {
+        const Plane& image = views.views[i].image;
+        const Plane* const before = views_before_.views.empty() ? nullptr : &views_before_.views[i].image;
+        if (coding.uses_key_frame && before == nullptr) {
+            continue;
+        }
+        const CodedPlane coded = code_plane(image, coding, before, views.header.settings.exposure);
+        Samples& view = samples(kView, coding);
+        view.add(coded);
+        if (codec::is_lossy(coding.encoding.codec)) {
+            view.ssim.push_back(image::ssim(image::display_image(coded.decoded), image::display_image(image)));
+        }
+    }
+}
+
+void CodecsRun::compare(const Views& views, const Views& uncoded, Samples& samples) const {
+    for (std::size_t i = 0; i < views.views.size(); ++i) {
+        samples.ssim.push_back(image::ssim(image::display_image(views.views[i].image),
+                                           image::display_image(uncoded.views[i].image)));
+    }
+    samples.discard_points.push_back(100.0 * (discard_share(views) - discard_share(uncoded)));
+}
+
+Views CodecsRun::make_views(render::GridRenderer& renderer, const SourceFrame& frame) {
+    if (const auto taken = planes_.upload(frame); !taken) {
+        throw std::runtime_error("source planes: " + taken.error().message);
+    }
+    if (frame.header.layer_count > 0) { // the surfaces of layers never travel
+        surfaces_.render(planes_);
+    }
+    return renderer.render(planes_, scene_.request(positions_));
+}
+
+void CodecsRun::Samples::add(const CodedPlane& coded) {
+    bytes.push_back(coded.bytes);
+    encode_ms.push_back(coded.encode_ms);
+    decode_ms.push_back(coded.decode_ms);
+}
+
+CodecsRun::Samples& CodecsRun::samples(const std::string& part, const Coding& coding) {
+    return samples_[{part, coding.name}];
+}
+
+Json CodecsRun::row(const std::string& part, const Coding& coding, const Samples& samples) {
+    const auto mean_or_null = [](const std::vector<double>& values) {
+        return values.empty() ? Json() : Json(mean(values));
+    };
+    return {{"part", part},
+            {"coding", coding.name},
+            {"bytes", mean(samples.bytes)},
+            {"encode_ms", median(samples.encode_ms)},
+            {"decode_ms", median(samples.decode_ms)},
+            {"ssim", mean_or_null(samples.ssim)},
+            {"discard_points", mean_or_null(samples.discard_points)}};
+}
+
+Json CodecsRun::result() const {
+    const Camera camera = run_.source().camera();
+    Json json{{"source_size", to_string(Size{camera.width_px, camera.height_px})},
+              {"guard_band_share", run_.guard_band().extra_share},
+              {"exposure", run_.header().settings.exposure},
+              {"measured_frames", settings_.measured},
+              {"view_count", positions_.size()}};
+    for (const char* part : {"diffuse", "specular", kLight, "depth", "normal", "id", "material", kView}) {
+        for (const Coding& coding : codings_) {
+            const auto found = samples_.find({part, coding.name});
+            if (found != samples_.end()) {
+                json["rows"].push_back(row(part, coding, found->second));
+            }
+        }
+    }
+    return json;
+}
+
+} // namespace fieldcast::bench

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "bench/coded_plane.h"
+#include "bench/light_field_run.h"
+
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace fieldcast::bench {
+
+/// What `codecs` renders and tries.
+struct CodecsSettings {
+    std::vector<std::uint32_t> qualities{50, 75, 90};
+    std::uint32_t frames = 8;
+    std::uint32_t measured = 2; ///< of these the last ones, at least one fewer than all
+    float exposure = 0.0F;      ///< 0: automatic
+};
+
+/// Encodes the planes and views of a scene's frames in every way, and makes views from what lossy ones leave of the
+/// light.
+class CodecsRun {
+public:
+    CodecsRun(const gpu::Device& device, LightFieldScene& scene, const CodecsSettings& settings);
+
+    /// Throws Interrupted.
+    void run();
+
+    /// source_size, guard_band_share, frames, view_count, and `rows`: part (a plane, "light": DIFFUSE and SPECULAR, or
+    /// "view": one view), coding, bytes, encode_ms, decode_ms, ssim, discard_points. Bytes are means, times medians over
+    /// frames and views. ssim of light is that of the views made from it; null for lossless codings.
+    nlohmann::ordered_json result() const;
+
+private:
+    /// What was measured of one part in one coding, plane by plane or view by view.
+    struct Samples {
+        std::vector<double> bytes;
+        std::vector<double> encode_ms;
+        std::vector<double> decode_ms;
+        std::vector<double> ssim;           ///< of views with the same without coding
+        std::vector<double> discard_points; ///< change of the share of discarded pixels, percent
+
+        void add(const CodedPlane& coded);
+    };
+    void measure(const SourceFrame& frame);
+    /// Encodes the planes that the coding fits; the result has the decoded ones in their place.
+    SourceFrame measure_planes(const SourceFrame& frame, const Coding& coding);
+    void measure_views(const Views& views, const Coding& coding);
+    void compare(const Views& views, const Views& uncoded, Samples& samples) const;
+    Views make_views(render::GridRenderer& renderer, const SourceFrame& frame);
+    Samples& samples(const std::string& part, const Coding& coding);
+    static nlohmann::ordered_json row(const std::string& part, const Coding& coding, const Samples& samples);
+
+    LightFieldScene& scene_;
+    CodecsSettings settings_;
+    std::vector<Coding> codings_;
+    std::vector<LatticePosition> positions_; ///< of the views that are made
+    LightFieldRun run_;
+    render::SourcePlanes planes_;
+    render::SurfacePlanesRenderer surfaces_;
+    render::GridRenderer uncoded_;
+    std::vector<std::unique_ptr<render::GridRenderer>> renderers_; ///< of each coding that changes light, else null
+    SourceFrame before_;                                           ///< the frame before
+    Views views_before_;                                           ///< empty in the first frame that is measured
+    std::map<std::pair<std::string, std::string>, Samples> samples_; ///< by part and coding
+};
+
+} // namespace fieldcast::bench
