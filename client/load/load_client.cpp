@@ -116,7 +116,7 @@ void LoadClient::close(TimePoint now) {
         is_gone_ = true;
     } else if (has_churned) {
         count_presence(now);
-        due_.reset(); // nobody waits while it is away
+        end_due(now); // nobody waits while it is away
         opens_at_ = now + rounded(spread(all_.group->away));
     } else {
         opens_at_ = now + backoff_.next();
@@ -134,11 +134,7 @@ void LoadClient::leave_for_good() {
     is_leaving_for_good_ = true;
     all_.window.end_ns = std::min(all_.window.end_ns, to_ns(now));
     count_presence(now);
-    if (due_) {
-        auto tally = all_.tally->lock();
-        tally->cut_off += due_->cut_off(all_.window.end_ns, all_.window, tally->of(Stage::kDue));
-    }
-    due_.reset();
+    end_due(now);
     if (!session_) {
         is_gone_ = true;
     } else if (!cut_at_) {
@@ -161,6 +157,7 @@ void LoadClient::read() {
 
 void LoadClient::handle(const net::Agreement& agreement) {
     agreement_ = agreement;
+    begin_due();
     auto tally = all_.tally->lock();
     ++tally->connected;
     tally->of(Stage::kConnect).add((net::steady_now_ns() - to_ns(opened_at_)) / 1000);
@@ -208,13 +205,28 @@ Seconds LoadClient::due_period() const {
     return Seconds(1.0 / (agreed > 0.0 ? agreed : kFallbackFps));
 }
 
-/// The schedule begins at a random moment of the first frame's period, so that it keeps no step with the server.
-void LoadClient::answer_due(const net::FrameArrived& frame, Tally& tally) {
+/// The schedule begins when the client dials, at a random phase, so that clients keep no step with each other or the
+/// server. A client that comes back after a loss goes on with the one it has.
+void LoadClient::begin_due() {
     if (!due_) {
         const Seconds period = due_period();
         const Seconds phase = period * std::uniform_real_distribution<double>(0.0, 1.0)(random_);
-        due_.emplace(frame.decoded_ns + rounded(phase).count(), rounded(period));
-        return;
+        due_.emplace(to_ns(opened_at_) + rounded(phase).count(), rounded(period));
+    }
+}
+
+/// The client leaves on purpose, or the window ends.
+void LoadClient::end_due(TimePoint now) {
+    if (due_) {
+        auto tally = all_.tally->lock();
+        tally->cut_off += due_->cut_off(std::min(to_ns(now), all_.window.end_ns), all_.window, tally->of(Stage::kDue));
+        due_.reset();
+    }
+}
+
+void LoadClient::answer_due(const net::FrameArrived& frame, Tally& tally) {
+    if (!due_) {
+        return; // it is leaving
     }
     const bool is_posed = frame.pose_sampled_ns.has_value();
     const bool counts = all_.window.contains(frame.decoded_ns);

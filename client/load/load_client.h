@@ -58,6 +58,8 @@ private:
     void handle(const net::Ended& ended);
     void add_stages(const net::FrameArrived& frame, Tally& tally);
     void answer_due(const net::FrameArrived& frame, Tally& tally);
+    void begin_due();
+    void end_due(TimePoint now);
     Seconds due_period() const;
     void add_loss(const std::string& reason);
     void count_presence(TimePoint until);

@@ -94,6 +94,17 @@ TEST(LoadRun, AStallIsNotHidden) {
     EXPECT_LT(tally.of(Stage::kInterval).largest_us(), 800'000); // which a closed model would have reported
 }
 
+TEST(LoadRun, WaitingInVainCountsAlsoForClientsThatLeave) {
+    FakeServer server([](FakeCall& call, int) { stream(call, 1, 1); });
+    std::vector<Group> groups{group_of("leaving", 2)};
+    groups[0].stay = 500ms;
+    groups[0].away = 100ms;
+    const LoadResult result = run(server, groups, 3s);
+    const Tally& tally = result.groups[0].tally;
+    EXPECT_GT(tally.cut_off, 10U); // of 20 moments per second and client, all after the only frame
+    EXPECT_GT(tally.of(Stage::kDue).largest_us(), 200'000); // they stay for at least 250 ms
+}
+
 TEST(LoadRun, CountsFramesThatWereNotSent) {
     FakeServer server([](FakeCall& call, int) { stream(call, 3); });
     const LoadResult result = run(server, {group_of("skipping", 1)});
