@@ -129,6 +129,11 @@ std::string to_table(const LoadResult& result) {
                  result.seconds, result.was_interrupted ? " (interrupted)" : "", client_count(result.scenario),
                  result.cpu_seconds, result.cpu_percent_per_client());
     for (const GroupResult& group : result.groups) {
+        if (group.tally.cut_off > 0) {
+            text += group.group.name + ": " + std::to_string(group.tally.cut_off) + " of " +
+                    std::to_string(group.tally.of(Stage::kDue).count()) +
+                    " due moments still waited when their client left; they count with what they had waited\n";
+        }
         for (const auto& [reason, count] : group.tally.reasons) {
             text += group.group.name + ": " + std::to_string(count) + " × " + reason + "\n";
         }

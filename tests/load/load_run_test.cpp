@@ -103,6 +103,7 @@ TEST(LoadRun, WaitingInVainCountsAlsoForClientsThatLeave) {
     const Tally& tally = result.groups[0].tally;
     EXPECT_GT(tally.cut_off, 10U); // of 20 moments per second and client, all after the only frame
     EXPECT_GT(tally.of(Stage::kDue).largest_us(), 200'000); // they stay for at least 250 ms
+    EXPECT_THAT(to_table(result), HasSubstr(std::to_string(tally.cut_off) + " of "));
 }
 
 TEST(LoadRun, CountsFramesThatWereNotSent) {
