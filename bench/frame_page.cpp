@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/frame_page.h"
 
-#include "bench/report/chart.h"
 #include "bench/result_page.h"
+#include "core/report/chart.h"
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,11 @@
 #include "bench/quality_page.h"
 
 #include "bench/quality_table.h"
-#include "bench/report/chart.h"
-#include "bench/report/picture.h"
 #include "bench/result_page.h"
 #include "core/image/correspondence.h"
 #include "core/image/metrics.h"
+#include "core/report/chart.h"
+#include "core/report/picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "bench/sources_page.h"
 
 #include "bench/quality_table.h"
-#include "bench/report/chart.h"
 #include "bench/result_page.h"
+#include "core/report/chart.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/report/page.h"
+#include "core/report/page.h"
 
 #include <nlohmann/json.hpp>
 

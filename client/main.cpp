@@ -1,58 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/console.h"
+#include "client/interrupt.h"
 #include "client/options.h"
 
 #include "core/base/log.h"
 #include "core/image/atomic_file.h"
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <span>
-#include <thread>
-#include <unistd.h>
 
 namespace {
 
 using namespace fieldcast;
 
-constexpr int kExitFailed = 1;
-constexpr int kExitUserError = 2;
-constexpr int kExitInterrupted = 130;
-
-/// Turns the first INT or TERM into a stop request; the second one ends the process at once. Made before any other
-/// thread, so that all of them inherit the blocked signals and only this one sees them.
-class Interrupt {
-public:
-    Interrupt() {
-        sigemptyset(&signals_);
-        sigaddset(&signals_, SIGINT);
-        sigaddset(&signals_, SIGTERM);
-        pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-        thread_ = std::jthread([this](const std::stop_token& stop) { listen(stop); });
-    }
-
-    std::stop_token token() const { return source_.get_token(); }
-    bool was_requested() const { return source_.stop_requested(); }
-
-private:
-    void listen(const std::stop_token& stop) {
-        constexpr timespec kLookAtStop{0, 100'000'000};
-        while (!stop.stop_requested()) {
-            if (sigtimedwait(&signals_, nullptr, &kLookAtStop) < 0) {
-                continue;
-            }
-            if (!source_.request_stop()) {
-                _exit(kExitInterrupted);
-            }
-        }
-    }
-
-    sigset_t signals_{};
-    std::stop_source source_;
-    std::jthread thread_;
-};
+using client::Interrupt;
+using client::kExitFailed;
+using client::kExitInterrupted;
+using client::kExitUserError;
 
 int report(const client::Options& options, const client::play::PlayResult& result, bool was_interrupted) {
     if (result.summary.shown > 0) {

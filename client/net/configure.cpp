@@ -4,6 +4,7 @@
 #include "core/wire/convert.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fieldcast::client::net {
 namespace {
@@ -199,6 +200,8 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wi
         return tl::unexpected(limits.error());
     }
     agreement.limits = *limits;
+    const float rate = message.frames_per_second();
+    agreement.frames_per_second = std::isfinite(rate) && rate > 0.0F ? rate : 0.0F;
     return agreement;
 }
 

@@ -47,7 +47,8 @@ struct Agreement {
     scene::SceneHash scene_hash{};
     Mode mode = Mode::kViews;
     wire::ViewSet view_set;
-    wire::FrameLimits limits; ///< for every frame of this epoch
+    wire::FrameLimits limits;       ///< for every frame of this epoch
+    float frames_per_second = 0.0F; ///< that the server means to send at most; 0: it does not say
 };
 
 v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);

@@ -7,8 +7,10 @@
 
 #include "fieldcast/v1/light_field.grpc.pb.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
+#include <thread>
 
 namespace fieldcast::client::net {
 
@@ -17,7 +19,8 @@ namespace fieldcast::client::net {
 // under the lock says that the main hold, taken before the call began, is still there.
 class MessageStream::Reactor final : public grpc::ClientBidiReactor<v1::ClientMessage, v1::ServerMessage> {
 public:
-    explicit Reactor(const Connection& connection) : stub_(v1::LightField::NewStub(connection.state().channel)) {
+    Reactor(const Connection& connection, ReadingOptions options)
+        : options_(std::move(options)), stub_(v1::LightField::NewStub(connection.state().channel)) {
         connection.state().prepare(context_);
         stub_->async()->Open(&context_, this);
         AddHold();
@@ -59,7 +62,9 @@ private:
     NextOperation choose_operation(State& state);
     void start(NextOperation operation);
     void release_main_hold();
+    void tell() const;
 
+    ReadingOptions options_;
     grpc::ClientContext context_;
     std::unique_ptr<v1::LightField::Stub> stub_;
     v1::ServerMessage reading_; ///< gRPC's while `is_reading`
@@ -150,7 +155,7 @@ std::optional<ReceivedMessage> MessageStream::Reactor::next(std::chrono::steady_
         message = std::move(state->received.front());
         state->received.pop_front();
         state->received_bytes -= message->message.ByteSizeLong();
-        resumes = state->is_open && !state->is_reading && state->received_bytes < kMaxWaitingBytes;
+        resumes = state->is_open && !state->is_reading && state->received_bytes < options_.max_waiting_bytes;
         if (resumes) {
             state->is_reading = true;
             AddHold();
@@ -184,10 +189,11 @@ void MessageStream::Reactor::OnReadDone(bool ok) {
         auto state = state_.lock();
         state->received_bytes += reading_.ByteSizeLong();
         state->received.push_back({std::move(reading_), steady_now_ns()});
-        continues = state->received_bytes < kMaxWaitingBytes;
+        continues = state->received_bytes < options_.max_waiting_bytes;
         state->is_reading = continues;
         reading_.Clear();
         changed_.notify_all();
+        tell();
     }
     if (continues) {
         StartRead(&reading_);
@@ -209,9 +215,18 @@ void MessageStream::Reactor::OnDone(const grpc::Status& status) {
     state->is_open = false;
     state->status = status;
     changed_.notify_all(); // under the lock: the destructor may be waiting, and destroys `changed_`
+    tell();
 }
 
-MessageStream::MessageStream(const Connection& connection) : reactor_(std::make_unique<Reactor>(connection)) {}
+void MessageStream::Reactor::tell() const {
+    if (options_.on_change) {
+        options_.on_change();
+    }
+}
+
+MessageStream::MessageStream(const Connection& connection, ReadingOptions options)
+    : max_bytes_per_second_(options.max_bytes_per_second),
+      reactor_(std::make_unique<Reactor>(connection, std::move(options))) {}
 MessageStream::~MessageStream() = default;
 
 void MessageStream::send(v1::ClientMessage message) {
@@ -222,7 +237,20 @@ void MessageStream::half_close() {
 }
 
 std::optional<ReceivedMessage> MessageStream::next(std::chrono::steady_clock::time_point deadline) {
-    return reactor_->next(deadline);
+    using Clock = std::chrono::steady_clock;
+    if (next_after_ > Clock::now()) {
+        std::this_thread::sleep_until(std::min(deadline, next_after_));
+        if (next_after_ > deadline) {
+            return std::nullopt;
+        }
+    }
+    auto message = reactor_->next(deadline);
+    if (message && max_bytes_per_second_ > 0.0) {
+        const std::chrono::duration<double> reading(static_cast<double>(message->message.ByteSizeLong()) /
+                                                    max_bytes_per_second_);
+        next_after_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(reading);
+    }
+    return message;
 }
 
 std::optional<NetError> MessageStream::end() const {

@@ -47,7 +47,11 @@ v1::ClientMessage to_ack(const FrameReport& report, v1::FrameOutcome outcome) {
 } // namespace
 
 Session::Session(const Connection& connection, const Wish& wish, WorkerPool& pool)
-    : wish_(wish), stream_(connection), assembler_(&pool), next_sync_(Clock::now()), last_message_(Clock::now()) {
+    : Session(connection, wish, pool, Options{}) {}
+
+Session::Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options)
+    : wish_(wish), stream_(connection, std::move(options.reading)), assembler_(&pool, options.decoding),
+      next_sync_(Clock::now()), last_message_(Clock::now()) {
     v1::ClientMessage message;
     *message.mutable_configure() = to_configure(wish, kRequestId);
     stream_.send(std::move(message));
@@ -75,6 +79,12 @@ std::optional<Event> Session::next(Clock::time_point deadline) {
         }
     }
     return std::nullopt;
+}
+
+Clock::time_point Session::next_call() const {
+    const Clock::time_point reads_on = stream_.next_after();
+    const Clock::time_point watch = std::min(next_sync_, last_message_ + kLongestSilence);
+    return reads_on > Clock::now() ? std::min(reads_on, watch) : watch;
 }
 
 void Session::report(const FrameReport& report) {

@@ -69,11 +69,21 @@ struct FrameReport {
 /// is checked. `next` belongs to one thread; `report` and `half_close` may be called from any.
 class Session {
 public:
+    struct Options {
+        wire::Decoding decoding = wire::Decoding::kFull; ///< else frames come without pixels
+        ReadingOptions reading{};
+    };
+
     /// `pool` decodes; it must outlive this.
     Session(const Connection& connection, const Wish& wish, WorkerPool& pool);
+    Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options);
 
     /// The next event, or nothing until `deadline`. After Ended there is nothing more.
     std::optional<Event> next(std::chrono::steady_clock::time_point deadline);
+
+    /// When `next` must be called again although no message has come: to keep the clocks in step, to notice silence,
+    /// to go on reading slowly.
+    std::chrono::steady_clock::time_point next_call() const;
 
     /// Sends a second acknowledgement with the times that were unknown at the first. Returns no credit.
     void report(const FrameReport& report);

@@ -22,6 +22,23 @@ struct TomlFile {
     std::vector<std::string> problems; ///< "FILE:LINE: …", for everything that is no setting
 };
 
+/// A table of a TOML file: its own settings, and the tables in it.
+struct TomlTable {
+    std::string name; ///< "group" of [group], of an element of [[group]] and of group = { … }; empty: the file itself
+    int line = 0;     ///< from 1
+    std::vector<TomlEntry> entries;  ///< in the order of their lines
+    std::vector<TomlTable> children; ///< in the order of their lines
+};
+
+/// A file with tables in it.
+struct TomlTree {
+    TomlTable root;
+    std::vector<std::string> problems; ///< "FILE:LINE: …", for everything that is no setting
+};
+
+/// As `read_toml`, with tables, four deep at most and 256 of them.
+TomlTree read_toml_tree(const std::filesystem::path& file);
+
 /// Reads `key = value` lines at the top level: texts, numbers, true, false and arrays of these. The file has at most
 /// 1 MiB, a text at most 4096 bytes, an array at most 256 values. Never throws for what the file says.
 TomlFile read_toml(const std::filesystem::path& file);

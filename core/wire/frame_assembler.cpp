@@ -18,8 +18,9 @@ using Clock = std::chrono::steady_clock;
 struct Strip {
     std::uint32_t part = 0;
     codec::RowBand band;
-    std::uint32_t size = 0; ///< announced; bytes.size() while incomplete is less
-    std::string bytes;
+    std::uint32_t size = 0;     ///< announced
+    std::uint32_t received = 0; ///< bytes so far
+    std::string bytes;          ///< what was received, if it is to be decoded
 };
 
 std::span<const std::byte> as_bytes(const std::string& text) {
@@ -39,6 +40,7 @@ struct FrameAssembler::Frame {
     std::vector<Part> parts;
     std::uint64_t key_frame_id = 0;                 ///< as in the header
     const std::vector<Plane>* key_planes = nullptr; ///< what strips may refer to; null: nothing
+    Decoding decoding = Decoding::kFull;
     std::uint32_t next_index = 1;
     std::optional<Strip> open;    ///< strip of which slices are missing
     std::vector<Strip> undecoded; ///< complete strips
@@ -49,6 +51,7 @@ struct FrameAssembler::Frame {
     static Decoded<std::unique_ptr<Frame>> begin(const v1::FrameChunk& chunk, const FrameLimits& limits);
     Decoded<void> refer_to(const std::vector<Plane>& planes);
     Decoded<void> add_slice(v1::FrameChunk& chunk);
+    void keep_payload(v1::FrameChunk& chunk);
     Decoded<void> open_strip(const v1::StripSlice& slice);
     Decoded<void> decode_strips(WorkerPool* pool);
     Decoded<void> check_complete(const v1::FrameTrailer& trailer) const;
@@ -112,7 +115,7 @@ Decoded<void> FrameAssembler::Frame::open_strip(const v1::StripSlice& slice) {
         return decode_error("strip: " + std::to_string(slice.strip_bytes()) + " bytes from offset " +
                             std::to_string(slice.slice_offset()) + ", at most " + std::to_string(most) + " from 0");
     }
-    open = Strip{slice.part(), {slice.first_row(), slice.row_count()}, slice.strip_bytes(), {}};
+    open = Strip{slice.part(), {slice.first_row(), slice.row_count()}, slice.strip_bytes(), 0, {}};
     return {};
 }
 
@@ -125,27 +128,41 @@ Decoded<void> FrameAssembler::Frame::add_slice(v1::FrameChunk& chunk) {
     }
     const codec::RowBand band{slice.first_row(), slice.row_count()};
     if (slice.part() != open->part || band != open->band || slice.strip_bytes() != open->size ||
-        slice.slice_offset() != open->bytes.size()) {
+        slice.slice_offset() != open->received) {
         return decode_error("strip: slice does not continue the one before");
     }
     const std::string& payload = chunk.payload();
-    if (payload.empty() || payload.size() > open->size - open->bytes.size()) {
+    if (payload.empty() || payload.size() > open->size - open->received) {
         return decode_error("strip: payload of " + std::to_string(payload.size()) + " bytes, " +
-                            std::to_string(open->size - open->bytes.size()) + " are missing");
+                            std::to_string(open->size - open->received) + " are missing");
     }
-    crc32c = codec::crc32c(as_bytes(payload), crc32c);
+    keep_payload(chunk);
+    if (open->received == open->size) {
+        parts[open->part].next_row += open->band.row_count;
+        if (decoding == Decoding::kFull) {
+            undecoded.push_back(std::move(*open));
+        }
+        open.reset();
+    }
+    return {};
+}
+
+/// Counts and checks the payload; keeps it if it is to be decoded.
+void FrameAssembler::Frame::keep_payload(v1::FrameChunk& chunk) {
+    const std::string& payload = chunk.payload();
+    open->received += static_cast<std::uint32_t>(payload.size());
     payload_bytes += payload.size();
+    if (decoding != Decoding::kHeaders) {
+        crc32c = codec::crc32c(as_bytes(payload), crc32c);
+    }
+    if (decoding != Decoding::kFull) {
+        return;
+    }
     if (open->bytes.empty()) {
         open->bytes = std::move(*chunk.mutable_payload()); // usual case: the whole strip, not copied
     } else {
         open->bytes += payload;
     }
-    if (open->bytes.size() == open->size) {
-        parts[open->part].next_row += open->band.row_count;
-        undecoded.push_back(std::move(*open));
-        open.reset();
-    }
-    return {};
 }
 
 Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
@@ -185,7 +202,7 @@ Decoded<void> FrameAssembler::Frame::check_complete(const v1::FrameTrailer& trai
                                 std::to_string(parts[i].next_row) + " of " + std::to_string(parts[i].height_px));
         }
     }
-    if (trailer.crc32c() != crc32c) {
+    if (decoding != Decoding::kHeaders && trailer.crc32c() != crc32c) {
         return decode_error("trailer.crc32c: payload was damaged");
     }
     return {};
@@ -222,7 +239,7 @@ const FrameHeader& ReceivedFrame::header() const {
     return views != nullptr ? views->views.header : std::get<SourceFrame>(content).header;
 }
 
-FrameAssembler::FrameAssembler(WorkerPool* pool) : pool_(pool) {}
+FrameAssembler::FrameAssembler(WorkerPool* pool, Decoding decoding) : pool_(pool), decoding_(decoding) {}
 
 FrameAssembler::~FrameAssembler() = default;
 
@@ -302,6 +319,12 @@ Decoded<void> FrameAssembler::begin_frame(const v1::FrameChunk& chunk) {
     auto frame = Frame::begin(chunk, limits_);
     if (!frame) {
         return tl::unexpected(frame.error());
+    }
+    (*frame)->decoding = decoding_;
+    if (decoding_ != Decoding::kFull) {
+        for (Part& part : (*frame)->parts) { // named, without pixels
+            part.plane = {part.semantic, part.format, part.width_px, part.height_px, {}};
+        }
     }
     const std::uint64_t key_frame_id = (*frame)->key_frame_id;
     if (key_frame_id != 0 && key_frame_id != chunk.frame_id()) {

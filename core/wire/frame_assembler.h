@@ -38,7 +38,14 @@ struct ReceivedViews {
     Views views;
 };
 
-/// A complete frame whose CRC was right.
+/// How much of a frame is looked at. Everything but kFull is for measuring: pixels are thrown away.
+enum class Decoding : std::uint8_t {
+    kFull,     ///< planes are decoded
+    kChecksum, ///< chunks must be complete, in order and undamaged; planes stay empty
+    kHeaders,  ///< chunks must be complete and in order; the CRC is not computed; planes stay empty
+};
+
+/// A complete frame whose CRC was right (see Decoding).
 struct ReceivedFrame {
     std::uint32_t epoch = 0;
     std::variant<SourceFrame, ReceivedViews> content;
@@ -60,7 +67,7 @@ struct ReceivedFrame {
 class FrameAssembler {
 public:
     /// Decodes with `pool`, which must outlive this; null: on the calling thread only.
-    explicit FrameAssembler(WorkerPool* pool = nullptr);
+    explicit FrameAssembler(WorkerPool* pool = nullptr, Decoding decoding = Decoding::kFull);
     ~FrameAssembler();
 
     /// Frames of this epoch follow. Drops an unfinished frame and the key frame; frame ids start anew.
@@ -76,7 +83,7 @@ private:
     struct Frame;
     struct Key { ///< the last key frame
         std::uint64_t frame_id = 0;
-        std::vector<Plane> planes; ///< by part
+        std::vector<Plane> planes; ///< by part; without pixels unless they are decoded
     };
     Decoded<void> begin_frame(const v1::FrameChunk& chunk);
     Decoded<std::optional<ReceivedFrame>> add_to_frame(v1::FrameChunk& chunk);
@@ -85,6 +92,7 @@ private:
 
     std::unique_ptr<Frame> frame_; ///< in progress, or null
     WorkerPool* pool_;
+    Decoding decoding_;
     FrameLimits limits_;
     std::uint32_t epoch_ = 0;
     std::optional<std::uint64_t> last_frame_id_; ///< newest header seen in this epoch

@@ -4,7 +4,7 @@
 #include "bench/grids_page.h"
 #include "bench/quality_page.h"
 #include "bench/quality_table.h"
-#include "tests/bench/html_check.h"
+#include "tests/unit/report/html_check.h"
 
 #include <fstream>
 #include <gmock/gmock.h>

@@ -80,6 +80,63 @@ TEST_F(SessionTest, DeliversFramesAndAcknowledgesEach) {
     EXPECT_GT(seen[1].decoded_ns(), 0);
 }
 
+TEST_F(SessionTest, TellsWhenSomethingHasComeAndWhenItEnds) {
+    open([](FakeCall& call, int) {
+        call.send(views_messages(call.grant(), 1));
+        call.read_rest();
+    });
+    Guarded<int> told;
+    std::condition_variable changed;
+    const auto wait_for = [&](int count) {
+        auto lock = told.lock();
+        return lock.wait_until(changed, std::chrono::steady_clock::now() + 10s,
+                               [&](int seen) { return seen >= count; });
+    };
+    Session::Options options;
+    options.decoding = wire::Decoding::kChecksum;
+    options.reading.on_change = [&] {
+        ++*told.lock();
+        changed.notify_all();
+    };
+    session_.emplace(*connection_, small_wish(), pool_, options);
+    ASSERT_TRUE(wait_for(1));
+    const auto arrived = next<FrameArrived>();
+    ASSERT_TRUE(arrived);
+    const auto& views = std::get<wire::ReceivedViews>(arrived->frame.content).views.views;
+    ASSERT_EQ(views.size(), 2U);
+    EXPECT_TRUE(views[0].image.bytes.empty());
+    EXPECT_GT(arrived->frame.payload_bytes, 0U);
+    const int before = *told.lock();
+    session_->half_close();
+    ASSERT_TRUE(wait_for(before + 1));
+    EXPECT_TRUE(next<Ended>());
+}
+
+TEST_F(SessionTest, ASlowReaderTakesItsTime) {
+    open([](FakeCall& call, int) {
+        const wire::ViewSet set = call.grant();
+        for (const std::uint64_t id : {1U, 2U, 3U}) {
+            call.send(views_messages(set, id));
+        }
+        call.read_rest();
+    });
+    constexpr double kBytesPerSecond = 2000.0;
+    Session::Options options;
+    options.reading = {.on_change = {}, .max_waiting_bytes = 1, .max_bytes_per_second = kBytesPerSecond};
+    session_.emplace(*connection_, small_wish(), pool_, options);
+    const auto begin = std::chrono::steady_clock::now();
+    std::uint64_t bytes = 0;
+    for (int i = 0; i < 3; ++i) {
+        const auto arrived = next<FrameArrived>();
+        ASSERT_TRUE(arrived);
+        bytes += arrived->frame.payload_bytes;
+        EXPECT_LE(session_->next_call(), std::chrono::steady_clock::now() + 1s); // the clocks' period
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    // The trailer of the last frame is read without waiting for its own share of time; everything before it took its.
+    EXPECT_GE(taken.count(), 0.9 * static_cast<double>(bytes) / kBytesPerSecond);
+}
+
 TEST_F(SessionTest, SendsASecondAcknowledgementWithTimes) {
     Guarded<std::optional<v1::FrameAck>> repeated;
     open([&](FakeCall& call, int) {

@@ -109,6 +109,48 @@ TEST_F(FrameAssemblerTest, RestoresViewsOfEveryAnchor) {
     }
 }
 
+TEST_F(FrameAssemblerTest, WithoutDecodingPlanesAreNamedAndEmpty) {
+    for (const Decoding decoding : {Decoding::kChecksum, Decoding::kHeaders}) {
+        FrameAssembler assembler(nullptr, decoding);
+        assembler.begin_epoch(3, {});
+        auto added = add_all(assembler, source_frame(4));
+        ASSERT_TRUE(added) << added.error().message;
+        ASSERT_TRUE(*added);
+        const SourceFrame sent = test_source(4);
+        const auto& frame = std::get<SourceFrame>((*added)->content);
+        EXPECT_TRUE(frame.header == sent.header);
+        ASSERT_EQ(frame.planes.size(), sent.planes.size());
+        for (std::size_t i = 0; i < sent.planes.size(); ++i) {
+            EXPECT_EQ(frame.planes[i].semantic, sent.planes[i].semantic);
+            EXPECT_EQ(frame.planes[i].height_px, sent.planes[i].height_px);
+            EXPECT_TRUE(frame.planes[i].bytes.empty());
+        }
+        EXPECT_EQ((*added)->payload_bytes, (*add_all(assembler_, source_frame(4)))->payload_bytes);
+    }
+}
+
+TEST_F(FrameAssemblerTest, WithoutDecodingMissingChunksAreNoticed) {
+    const auto chunks = source_frame(1);
+    for (std::size_t missing = 0; missing + 1 < chunks.size(); ++missing) {
+        FrameAssembler assembler(nullptr, Decoding::kHeaders);
+        assembler.begin_epoch(3, {});
+        auto damaged = chunks;
+        damaged.erase(damaged.begin() + static_cast<std::ptrdiff_t>(missing));
+        EXPECT_FALSE(add_all(assembler, damaged)) << missing;
+    }
+}
+
+TEST_F(FrameAssemblerTest, OnlyHeaderDecodingLeavesDamageUnnoticed) {
+    auto damaged = source_frame(1);
+    damaged[1].mutable_payload()->back() ^= 1;
+    for (const Decoding decoding : {Decoding::kChecksum, Decoding::kHeaders}) {
+        FrameAssembler assembler(nullptr, decoding);
+        assembler.begin_epoch(3, {});
+        const auto added = add_all(assembler, damaged);
+        EXPECT_EQ(added.has_value(), decoding == Decoding::kHeaders);
+    }
+}
+
 TEST_F(FrameAssemblerTest, EveryMissingChunkIsNoticed) {
     const auto chunks = source_frame(1);
     for (std::size_t missing = 0; missing + 1 < chunks.size(); ++missing) {

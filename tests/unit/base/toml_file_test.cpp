@@ -70,6 +70,40 @@ TEST_F(Toml, IsBounded) {
     EXPECT_THAT(read("a = " + std::string(5000, '[')).problems, testing::SizeIs(1)); // no deep recursion
 }
 
+TEST_F(Toml, ReadsTablesWithTheirLines) {
+    read("name = \"a\"\n[[group]]\ncount = 2\nlimits = { fps = 3 }\n\n[target]\naddress = \"x\"\n[[group]]\ncount = 4\n");
+    const TomlTree tree = read_toml_tree(file_);
+    EXPECT_THAT(tree.problems, IsEmpty());
+    ASSERT_EQ(tree.root.entries.size(), 1U);
+    EXPECT_EQ(tree.root.entries[0].key, "name");
+    ASSERT_EQ(tree.root.children.size(), 3U);
+    const TomlTable& first = tree.root.children[0];
+    EXPECT_EQ(first.name, "group");
+    EXPECT_EQ(first.line, 2);
+    EXPECT_THAT(first.entries.at(0).values, ElementsAre("2"));
+    ASSERT_EQ(first.children.size(), 1U);
+    EXPECT_EQ(first.children[0].name, "limits");
+    EXPECT_EQ(first.children[0].line, 4);
+    EXPECT_THAT(first.children[0].entries.at(0).values, ElementsAre("3"));
+    EXPECT_EQ(tree.root.children[1].name, "target");
+    EXPECT_EQ(tree.root.children[2].entries.at(0).line, 9);
+}
+
+TEST_F(Toml, BoundsTables) {
+    read("[a.b.c.d]\nx = 1\n");
+    EXPECT_THAT(read_toml_tree(file_).problems, IsEmpty());
+    read("[a.b.c.d.e]\nx = 1\n");
+    EXPECT_THAT(read_toml_tree(file_).problems, ElementsAre(HasSubstr(":1: e: at most 256 tables, 4 deep")));
+    std::string many;
+    for (int i = 0; i < 257; ++i) {
+        many += "[[a]]\n";
+    }
+    read(many);
+    EXPECT_THAT(read_toml_tree(file_).problems, ElementsAre(HasSubstr("at most 256 tables")));
+    read("a = 2020-01-01\n");
+    EXPECT_THAT(read_toml_tree(file_).problems, ElementsAre(HasSubstr(":1: a: write")));
+}
+
 TEST_F(Toml, SaysWhenAFileCannotBeRead) {
     EXPECT_THAT(read_toml("/no/such/file.toml").problems, ElementsAre("/no/such/file.toml: cannot be read"));
     EXPECT_THAT(read_toml("/").problems, ElementsAre("/: cannot be read"));

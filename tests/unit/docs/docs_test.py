@@ -9,6 +9,7 @@ NOT_OURS = {"build", "out", "third_party", "node_modules"}
 FLAG_SOURCES = {
     "server": ["server/ops/flags.cpp", "server/ops/limit_flags.cpp"],
     "client": ["client/options.cpp"],
+    "load": ["client/load_options.cpp"],
     "bench": sorted(p.as_posix() for p in pathlib.Path("bench").glob("*.cpp")),
 }
 FIRST_DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md", "docs/lightfield.md",

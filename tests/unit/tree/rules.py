@@ -7,11 +7,12 @@ import re
 
 # Folder -> folders of core that it may include, besides itself. Completed transitively from the arrows of
 # docs/architecture.md: base <- lightfield <- {image, codec}; base <- gpu; {gpu, image, lightfield, codec} <- scene;
-# {gpu, scene, lightfield} <- render; {lightfield, codec} <- wire.
+# {gpu, scene, lightfield} <- render; {lightfield, codec} <- wire; image <- report.
 CORE = {
     "core/base": set(),
     "core/lightfield": {"core/base"},
     "core/image": {"core/base", "core/lightfield"},
+    "core/report": {"core/base", "core/lightfield", "core/image"},
     "core/codec": {"core/base", "core/lightfield"},
     "core/gpu": {"core/base"},
     "core/scene": {"core/base", "core/lightfield", "core/image", "core/codec", "core/gpu"},

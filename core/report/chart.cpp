@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/chart.h"
+#include "core/report/chart.h"
 
 #include "core/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 namespace {
 
@@ -206,4 +206,4 @@ Markup heat_map(const HeatMap& map) {
     return element("figure", "", content);
 }
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/report/markup.h"
+#include "core/report/markup.h"
 
 #include <utility>
 #include <vector>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 /// A table: first column names, the others numbers.
 struct Table {
@@ -46,4 +46,4 @@ private:
     Markup content_;
 };
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

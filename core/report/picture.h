@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/report/page.h"
+#include "core/report/page.h"
 #include "core/image/image_file.h"
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 /// Part of an image.
 struct Crop {
@@ -40,4 +40,4 @@ struct Picture {
 /// and all of them beside each other. Their pixels stand once in the page's style sheet. At most 16, once per page.
 Markup compare_pictures(Page& page, const std::vector<Picture>& pictures);
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

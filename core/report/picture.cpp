@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours of errors: control points of "magma" by S. van der Walt and N. Smith (matplotlib, CC0).
-#include "bench/report/picture.h"
+#include "core/report/picture.h"
 
 #include "core/base/error.h"
 
@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 namespace {
 
@@ -140,4 +140,4 @@ Markup compare_pictures(Page& page, const std::vector<Picture>& pictures) {
     return content;
 }
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

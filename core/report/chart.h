@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/report/markup.h"
+#include "core/report/markup.h"
 
 #include <optional>
 #include <vector>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 // Charts are inline SVG. Places along the x axis are percentages, so charts fill any width and their letters keep their
 // size. Colours are those of the page's style sheet (style.h), `series` 0 … 7 of them.
@@ -74,4 +74,4 @@ struct HeatMap {
 };
 Markup heat_map(const HeatMap& map);
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/markup.h"
+#include "core/report/markup.h"
 
 #include <array>
 #include <iomanip>
 #include <sstream>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 std::string joined(std::initializer_list<std::string_view> parts) {
     std::string result;
@@ -74,4 +74,4 @@ std::string fixed(double value, int digits) {
     return stream.str();
 }
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fieldcast::bench::test {
+namespace fieldcast::test {
 
 /// What is wrong with a page that should be well-formed and self-contained, or nothing: elements that are not closed in
 /// order, scripts, anything that a browser would fetch. (Quoted attributes without '>', as our pages have them.)
@@ -41,4 +41,4 @@ inline std::string html_problem(std::string_view html) {
     return open.empty() ? std::string() : open.back() + " is not closed";
 }
 
-} // namespace fieldcast::bench::test
+} // namespace fieldcast::test

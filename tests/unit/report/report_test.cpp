@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/chart.h"
-#include "bench/report/page.h"
-#include "bench/report/picture.h"
 #include "core/base/error.h"
-#include "tests/bench/html_check.h"
+#include "core/report/chart.h"
+#include "core/report/page.h"
+#include "core/report/picture.h"
+#include "tests/unit/report/html_check.h"
 
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <iterator>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 namespace {
 
 using testing::HasSubstr;
@@ -139,4 +139,4 @@ TEST(Page, SaysWhereItCannotBeWritten) {
 }
 
 } // namespace
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/report/page.h"
+#include "core/report/page.h"
 
-#include "bench/report/style.h"
+#include "core/report/style.h"
 #include "core/base/error.h"
 #include "core/image/atomic_file.h"
 
 #include <system_error>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 Markup table(const Table& table) {
     Markup titles;
@@ -82,4 +82,4 @@ void Page::write(const std::string& file) const {
     }
 }
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

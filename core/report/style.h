@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 /// The style sheet of all pages.
 inline constexpr std::string_view kStyle = R"css(
@@ -50,6 +50,7 @@ svg text.inside { fill: #fff; font-weight: 600; }
 .s2 { fill: var(--s2); background: var(--s2); stroke: var(--s2); } .s3 { fill: var(--s3); background: var(--s3); stroke: var(--s3); }
 .s4 { fill: var(--s4); background: var(--s4); stroke: var(--s4); } .s5 { fill: var(--s5); background: var(--s5); stroke: var(--s5); }
 .s6 { fill: var(--s6); background: var(--s6); stroke: var(--s6); } .s7 { fill: var(--s7); background: var(--s7); stroke: var(--s7); }
+.curve { stroke-width: 2; fill: none; vector-effect: non-scaling-stroke; stroke-linejoin: round; }
 .stack { border-radius: .35rem; overflow: hidden; margin-bottom: 1rem; } .stack rect { stroke: none; }
 .stack-label .value { white-space: nowrap; }
 .stack-label { display: flex; justify-content: space-between; gap: 1rem; font-size: .92rem; margin-bottom: .2rem; }
@@ -92,4 +93,4 @@ dt { font-weight: 600; } dd { margin: 0; color: var(--soft); overflow-wrap: anyw
 @media print { .viewer { display: none; } section, figure { break-inside: avoid; } }
 )css";
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace fieldcast::bench::report {
+namespace fieldcast::report {
 
 /// A well-formed piece of HTML. Text becomes markup through text() only, so that none reaches a page unescaped.
 struct Markup {
@@ -35,4 +35,4 @@ std::string base64(std::span<const std::byte> bytes);
 /// A number for people: fixed, `digits` decimals.
 std::string fixed(double value, int digits);
 
-} // namespace fieldcast::bench::report
+} // namespace fieldcast::report

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <csignal>
+#include <stop_token>
+#include <thread>
+
+namespace fieldcast::client {
+
+/// What a program of ours returns.
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUserError = 2;
+inline constexpr int kExitInterrupted = 130;
+
+/// Turns the first INT or TERM into a stop request; the second one ends the process at once. Made before any other
+/// thread, so that all of them inherit the blocked signals and only this one sees them.
+class Interrupt {
+public:
+    Interrupt();
+
+    std::stop_token token() const { return source_.get_token(); }
+    bool was_requested() const { return source_.stop_requested(); }
+
+private:
+    void listen(const std::stop_token& stop);
+
+    sigset_t signals_{};
+    std::stop_source source_;
+    std::jthread thread_;
+};
+
+} // namespace fieldcast::client
