@@ -99,8 +99,8 @@ std::optional<Refusal> Session::admit(const Configuration& wanted) {
     const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
     const std::uint64_t new_pixels = made_pixels(wanted);
     if (!pixels_.resize(std::max(old_pixels, new_pixels))) { // both, until it is known which of them it will be
-        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions of " +
-                         "this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
+        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions " +
+                         "of this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
                          " that one peer may have");
     }
     const auto problem = subscribe(wanted);

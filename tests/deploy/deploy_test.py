@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the files of deploy/ with the tools they are for. Run in the root: python3 tests/deploy/deploy_test.py [SERVER]
+"""Checks the files of deploy/ with the tools they are for.
+
+Run in the root: python3 tests/deploy/deploy_test.py [SERVER]
 
 SERVER is a built fieldcast-server. Tools that are not there are named in the skips. What needs a running server is in
 tests/system: envoy_test.cpp, operation_process_test.cpp (dashboard and alerts against a live /metrics page).

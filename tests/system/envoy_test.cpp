@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Through a real Envoy with deploy/envoy.yaml: gRPC over HTTP/2 and gRPC-Web, with the stream lengths and half-closes that
-// proxies truncate when either side ends a stream before the other.
+// Through a real Envoy with deploy/envoy.yaml: gRPC over HTTP/2 and gRPC-Web, with the stream lengths and half-closes
+// that proxies truncate when either side ends a stream before the other.
 #include "certificate_authority.h"
 #include "http_client.h"
 #include "program.h"
