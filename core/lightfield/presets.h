@@ -14,9 +14,9 @@ struct Preset {
 
 /// "reprojected": one sample per pixel, neither accumulated nor denoised. "svgf": SVGF with its paper's parameters.
 /// "paper": that, and every view averages its own light over frames. "paper-red": the light field paper's other route,
-/// where SVGF denoises every view. All without guard band, with path traced holes and one light sample, as in that
-/// paper. "ours": the defaults, holes cascaded from the corners of a grid of `rows` × `cols`. "red": that by the red
-/// route. Empty if there is no such preset.
+/// where SVGF denoises every view. All without guard band, with path traced holes and one light sample, as in that paper.
+/// "ours": the defaults, holes cascaded from the corners of a grid of `rows` × `cols`. "red": that by the red route. Empty
+/// if there is no such preset.
 std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols);
 
 /// "a, b, c", for messages.
