@@ -66,7 +66,7 @@ public:
         const gpu::Buffer& counters;
         const gpu::Buffer& radiance;
         const gpu::BindingSet& source_set;
-        const shared::ViewLight* light = nullptr; ///< of views that are filtered: gets the holes' light, radiance does not
+        const shared::ViewLight* light = nullptr; ///< if views are filtered: gets what radiance would
     };
 
     /// Numbers the holes and submits the recorder, since their count decides how large arrays must be; `times` gets the

@@ -39,7 +39,10 @@ HistoryOfHoles& ViewHistories::holes(const ViewRequest& request) {
     return **found;
 }
 
+// A filter holds much memory: one that no frame used for a while goes.
 ViewFilter& ViewHistories::filter(const ViewRequest& request) {
+    constexpr std::uint64_t kForgottenAfter = 64; // uses of other views
+    std::erase_if(filters_, [&](const auto& kept) { return use_count_ - kept->last_use > kForgottenAfter; });
     ViewRequest kind = request;
     kind.positions.clear();
     auto found = std::ranges::find_if(filters_, [&](const auto& kept) { return kept->kind == kind; });

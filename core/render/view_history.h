@@ -16,7 +16,8 @@ struct HistoryOfHoles {
     HoleHistory holes;
 };
 
-/// What is kept of views from frame to frame. A channel has few sets of views; those not used for longest are forgotten.
+/// What is kept of views from frame to frame. A channel has few sets of views; those not used for longest are
+/// forgotten.
 class ViewHistories {
 public:
     ViewHistories(const gpu::Device& device, const scene::GpuScene& scene) : device_(device), scene_(scene) {}
