@@ -131,7 +131,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_flag("--validation", config.has_validation, "Vulkan validation layer")->group("Rendering");
 }
 
-void add_serving_flags(CLI::App& app, FlagText& text) {
+void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--listen", text.listen,
                    "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
         ->group("Serving")
@@ -231,7 +231,7 @@ struct CommandLine {
         add_scene_flags(app, text, config);
         add_image_flags(app, text, config);
         add_render_flags(app, text, config);
-        add_serving_flags(app, text);
+        add_serving_flags(app, text, config);
         add_limit_flags(app, config);
         add_security_flags(app, text);
         add_health_flags(app, health);

@@ -301,7 +301,7 @@ std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::E
         return bytes;
     }
     const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
-    bytes[{.semantic = PlaneSemantic::kColour, .codec = views.format.codec}] = chunks.payload_bytes;
+    bytes[{.semantic = PlaneSemantic::kColour, .encoding = views.format.encoding}] = chunks.payload_bytes;
     return bytes;
 }
 
