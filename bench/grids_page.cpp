@@ -48,8 +48,6 @@ report::Markup cost(const Rows& rows) {
 /// SSIM of each view, mean over frames, all grids in one scale.
 report::Markup views(const Rows& rows) {
     std::vector<report::HeatMap> maps;
-    double low = 1.0;
-    double high = -1.0;
     for (const auto& [name, row] : rows) {
         std::map<std::pair<int, int>, std::pair<double, double>> sums; // by row and column: SSIM, frames
         std::size_t cols = 1;
@@ -62,18 +60,10 @@ report::Markup views(const Rows& rows) {
         report::HeatMap map{.title = name, .cols = cols, .values = {}};
         for (const auto& [place, sum] : sums) {
             map.values.push_back(sum.first / sum.second);
-            low = std::min(low, map.values.back());
-            high = std::max(high, map.values.back());
         }
         maps.push_back(map);
     }
-    std::vector<report::Markup> figures;
-    for (report::HeatMap& map : maps) {
-        map.low = low;
-        map.high = high;
-        figures.push_back(report::heat_map(map));
-    }
-    return report::side_by_side(figures);
+    return report::heat_maps(std::move(maps));
 }
 
 report::Markup all_numbers(const Rows& rows) {

@@ -39,25 +39,15 @@ report::Markup cost(const Rows& rows) {
 /// One measure of each view of the last frame, all configurations in one scale. Sources can be told by their values.
 report::Markup maps_of(const Rows& rows, const char* measure, double factor, int digits) {
     std::vector<report::HeatMap> maps;
-    double low = 1e9;
-    double high = -1e9;
     for (const auto& [name, row] : rows) {
         report::HeatMap map{.title = name, .cols = 1, .values = {}, .digits = digits};
         for (const Json& view : row["views"]) {
             map.values.push_back(factor * view[measure].get<double>());
             map.cols = std::max(map.cols, view["col"].get<std::size_t>() + 1);
         }
-        low = std::min(low, *std::ranges::min_element(map.values));
-        high = std::max(high, *std::ranges::max_element(map.values));
         maps.push_back(map);
     }
-    std::vector<report::Markup> figures;
-    for (report::HeatMap& map : maps) {
-        map.low = low;
-        map.high = high;
-        figures.push_back(report::heat_map(map));
-    }
-    return report::side_by_side(figures);
+    return report::heat_maps(std::move(maps));
 }
 
 report::Markup all_numbers(const Rows& rows) {

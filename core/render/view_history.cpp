@@ -15,16 +15,6 @@ template <class T> void forget_oldest(std::vector<std::unique_ptr<T>>& kept) {
     }
 }
 
-/// Index of `position` among `positions`, which gets it if it is not there.
-std::uint32_t index_of(std::vector<LatticePosition>& positions, LatticePosition position) {
-    const auto found = std::ranges::find(positions, position);
-    const auto index = static_cast<std::uint32_t>(found - positions.begin());
-    if (found == positions.end()) {
-        positions.push_back(position);
-    }
-    return index;
-}
-
 } // namespace
 
 HistoryOfHoles& ViewHistories::holes(const ViewRequest& request) {
@@ -53,25 +43,6 @@ ViewFilter& ViewHistories::filter(const ViewRequest& request) {
     }
     (*found)->last_use = ++use_count_;
     return (*found)->filter;
-}
-
-std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions) {
-    if (holes.cascade_rows == 0 || holes.cascade_cols == 0) {
-        return {};
-    }
-    ViewGrid grid;
-    grid.rows = holes.cascade_rows;
-    grid.cols = holes.cascade_cols;
-    std::vector<std::uint32_t> corners;
-    for (const std::uint32_t row : {0U, grid.rows - 1}) {
-        for (const std::uint32_t col : {0U, grid.cols - 1}) {
-            const std::uint32_t index = index_of(positions, lattice_position(grid, row, col));
-            if (std::ranges::find(corners, index) == corners.end()) {
-                corners.push_back(index);
-            }
-        }
-    }
-    return corners;
 }
 
 } // namespace fieldcast::render

@@ -44,7 +44,4 @@ private:
     std::vector<std::unique_ptr<Filter>> filters_;
 };
 
-/// Indices of the views whose holes fill those of the others; positions that are missing are added.
-std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions);
-
 } // namespace fieldcast::render

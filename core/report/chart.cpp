@@ -2,9 +2,11 @@
 #include "core/report/chart.h"
 
 #include "core/base/error.h"
+#include "core/report/page.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fieldcast::report {
 
@@ -204,6 +206,24 @@ Markup heat_map(const HeatMap& map) {
     Markup content = heading(map.title, {});
     content += element("table", "heat", rows);
     return element("figure", "", content);
+}
+
+Markup heat_maps(std::vector<HeatMap> maps) {
+    double low = std::numeric_limits<double>::max();
+    double high = std::numeric_limits<double>::lowest();
+    for (const HeatMap& map : maps) {
+        for (const double value : map.values) {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    }
+    std::vector<Markup> figures;
+    for (HeatMap& map : maps) {
+        map.low = low;
+        map.high = high;
+        figures.push_back(heat_map(map));
+    }
+    return side_by_side(figures);
 }
 
 } // namespace fieldcast::report

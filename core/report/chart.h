@@ -74,4 +74,7 @@ struct HeatMap {
 };
 Markup heat_map(const HeatMap& map);
 
+/// Several side by side, from the least to the most of all their values.
+Markup heat_maps(std::vector<HeatMap> maps);
+
 } // namespace fieldcast::report
