@@ -39,8 +39,8 @@ std::map<LatticePosition, ViewTruth> GroundTruth::of_frame(std::uint32_t frame, 
     for (const LatticePosition position : protocol_.views) {
         ViewTruth& truth = truths[position];
         truth.reference = references_.get(frame, position, samples, {}).value();
-        if (frame > 0 && references_.samples_of(frame - 1, position) >= samples) {
-            truth.reference_before = references_.get(frame - 1, position, samples, {});
+        if (frame > 0 && references_.lacking(frame - 1, position, samples) == 0) {
+            truth.reference_before = references_.get(frame - 1, position, samples, {}).value().mean;
         }
         if (frame > 0 && maker != nullptr) {
             add_motion(truth, frame, position, *maker);

@@ -11,7 +11,7 @@ namespace fieldcast::bench {
 
 /// What is known of one view in a scored frame, whatever the row that is scored.
 struct ViewTruth {
-    image::RgbF32 reference;                         ///< linear
+    ReferencePicture reference;
     std::vector<bool> moving{};                      ///< around moving objects; empty: not known
     std::optional<image::Correspondence> before{};   ///< where its pixels were in the frame before, if that was noted
     std::optional<image::RgbF32> reference_before{}; ///< linear, of the frame before, if there is one

@@ -118,7 +118,7 @@ report::Markup light_field(const Rows& rows, const std::string& highlighted) {
 }
 
 report::Markup all_numbers(const Rows& rows, const std::string& highlighted) {
-    report::Table table{.titles = {"input", "RMSE", "SSIM", "relMSE", "holes", "reused", "border", "moving", "discards",
+    report::Table table{.titles = {"input", "RMSE", "SSIM", "RMSE*", "SSIM*", "relMSE", "holes", "reused", "border", "moving", "discards",
                                    "path traced", "frame"},
                         .rows = {}};
     for (const auto& [name, row] : rows) {
@@ -127,6 +127,7 @@ report::Markup all_numbers(const Rows& rows, const std::string& highlighted) {
         };
         table.highlighted = name == highlighted ? table.rows.size() : table.highlighted;
         table.rows.push_back({name, number_text(row["rmse"], 4), number_text(row["ssim"], 4),
+                              number_text(row["rmse_without_noise"], 4), number_text(row["ssim_without_noise"], 4),
                               number_text(row["relative_mse"], 4), number_text(row["rmse_holes"], 4),
                               number_text(row["rmse_reused"], 4), number_text(row["rmse_border"], 4),
                               number_text(row["rmse_moving"], 4), percent("discard_share"), percent("traced_share"),
@@ -139,6 +140,8 @@ report::Markup meanings() {
     return report::definitions(
         {{"RMSE", "Root mean squared error of display-referred values (0 … 1); mean over pictures."},
          {"SSIM", "Structural similarity (Wang et al. 2004) of the luma; mean over pictures."},
+         {"RMSE*, SSIM*", "What they would be against references without noise, estimated from two halves of their "
+                          "samples."},
          {"relMSE", "Squared error over squared reference, of linear values; a few dark pixels can carry it."},
          {"holes, reused, border, moving",
           "RMSE over those pixels only: not shown by the source; shown by it; within 32 "

@@ -28,7 +28,7 @@ image::RgbF32 QualityRow::score(const PictureId& id, const ViewTruth& truth) {
         const SuccessivePictures pictures{before->second, image::display_image(picture, exposure)};
         if (truth.reference_before) {
             const SuccessivePictures references{image::display_image(*truth.reference_before, exposure),
-                                                image::display_image(truth.reference, exposure)};
+                                                image::display_image(truth.reference.mean, exposure)};
             temporal_.add(pictures, &references, *truth.before);
         } else {
             temporal_.add(pictures, nullptr, *truth.before);

@@ -112,7 +112,7 @@ void QualityRun::score_frame(std::uint32_t frame) {
         }
     }
     for (const LatticePosition position : settings_.protocol.views) {
-        keep(kReferenceName, {frame, position}, truths.at(position).reference);
+        keep(kReferenceName, {frame, position}, truths.at(position).reference.mean);
     }
 }
 
@@ -122,7 +122,7 @@ void QualityRun::score_light_field() {
     FC_ASSERT(maker != nullptr, "some row reuses");
     for (const LatticePosition position : lattice_positions(scene_.grid())) {
         truth.references.push_back(
-            references_.get(last_frame(), position, settings_.protocol.reference_samples, {}).value());
+            references_.get(last_frame(), position, settings_.protocol.reference_samples, {}).value().mean);
         truth.surfaces.push_back(maker->surfaces(position));
     }
     for (QualityRow& row : rows_) {
@@ -156,6 +156,8 @@ nlohmann::ordered_json QualityRun::result() const {
                                         {"col", index.col},
                                         {"rmse", picture.rmse},
                                         {"ssim", picture.ssim},
+                                        {"rmse_without_noise", picture.rmse_without_noise},
+                                        {"ssim_without_noise", picture.ssim_without_noise},
                                         {"relative_mse", picture.relative_mse},
                                         {"file", picture_name(row.name(), picture.id)},
                                         {"reference", picture_name(kReferenceName, picture.id)}});

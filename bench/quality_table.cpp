@@ -75,6 +75,8 @@ void print_quality_table(std::ostream& stream, const Json& result) {
     print_columns(stream, rows,
                   {{"RMSE", "rmse", 4},
                    {"SSIM", "ssim", 4},
+                   {"RMSE*", "rmse_without_noise", 4},
+                   {"SSIM*", "ssim_without_noise", 4},
                    {"relMSE", "relative_mse", 4},
                    {"holes", "rmse_holes", 4},
                    {"reused", "rmse_reused", 4},
@@ -83,6 +85,7 @@ void print_quality_table(std::ostream& stream, const Json& result) {
                    {"discards", "discard_share", 2, 100.0, " %"},
                    {"traced", "traced_share", 2, 100.0, " %"},
                    {"frame", "frame_ms", 0, 1.0, " ms"}});
+    stream << "* estimated without the noise of the references\n";
     if (const auto temporal = parts(result["rows"], "temporal"); !temporal.empty()) {
         print_columns(stream, temporal,
                       {{"warped", "warped_error", 4}, {"excess", "warped_error_excess", 4}, {"flicker", "flicker", 4}});
@@ -111,7 +114,8 @@ const std::vector<std::string>& quality_columns() {
         "machine",  "commit",        "command",      "scene",         "protocol",     "input",
         "rmse",     "ssim",          "relative_mse", "rmse_holes",    "rmse_reused",  "rmse_border",
         "frame_ms", "traced_share",  "rmse_moving",  "discard_share", "warped_error", "warped_error_excess",
-        "flicker",  "angular_error", "epi_ssim",     "refocus_rmse",  "refocus_ssim", "flip"};
+        "flicker",  "angular_error", "epi_ssim",     "refocus_rmse",  "refocus_ssim", "flip",
+        "rmse_without_noise", "ssim_without_noise"};
     return columns;
 }
 

@@ -3,35 +3,45 @@
 
 #include "bench/light_field_run.h"
 #include "bench/picture_id.h"
-#include "core/image/image_file.h"
+#include "bench/reference_picture.h"
 #include "core/render/reference_renderer.h"
 
 #include <functional>
 
 namespace fieldcast::bench {
 
-/// Views path traced with many samples, without clamps, kept as files: an EXR of linear radiance, and beside it what it
-/// is of. Making them can be interrupted at any time; it goes on from what was saved.
+/// Views path traced with many samples, without clamps, kept as files: an EXR of linear radiance for each half of the
+/// samples, and beside it what it is of. Making them can be interrupted at any time; it goes on from what was saved.
 class References {
 public:
     /// `folder` gets a subfolder per scene.
     References(const gpu::Device& device, LightFieldScene& scene, std::filesystem::path folder);
 
-    /// `done`: samples of this view so far; false: stop (the image is saved).
+    /// `done`: samples added to this view so far; false: stop (the image is saved).
     using Progress = std::function<bool(std::uint32_t done)>;
 
     /// View of the scene's current pose, which is that of `frame`, with at least `samples` per pixel; makes what is
     /// missing. Empty if `progress` stopped it.
-    std::optional<image::RgbF32> get(std::uint32_t frame, LatticePosition position, std::uint32_t samples,
-                                     const Progress& progress);
+    std::optional<ReferencePicture> get(std::uint32_t frame, LatticePosition position, std::uint32_t samples,
+                                        const Progress& progress);
 
-    /// Samples that the file of this view has; 0: there is none, or it is of another scene or other settings.
-    std::uint32_t samples_of(std::uint32_t frame, LatticePosition position) const;
+    /// Samples that this view lacks of `samples`, of both halves together; those that its files have count only if they
+    /// are of this scene and these settings.
+    std::uint32_t lacking(std::uint32_t frame, LatticePosition position, std::uint32_t samples) const;
 
 private:
-    std::filesystem::path file_of(std::uint32_t frame, LatticePosition position) const;
-    nlohmann::ordered_json description() const;
-    void save(const std::filesystem::path& file, const Camera& camera) const;
+    /// One of the two pictures that are made of a view.
+    struct Part {
+        std::uint32_t frame = 0;
+        LatticePosition position;
+        std::uint32_t half = 0; ///< 0 or 1
+    };
+
+    std::filesystem::path file_of(const Part& part) const;
+    nlohmann::ordered_json description(const Part& part) const;
+    std::uint32_t samples_of(const Part& part) const;
+    void save(const Part& part, const Camera& camera) const;
+    bool add_samples(const Part& part, std::uint32_t samples, const Progress& progress);
 
     LightFieldScene& scene_;
     std::filesystem::path folder_;

@@ -43,13 +43,17 @@ nlohmann::ordered_json Scores::Part::rmse() const {
     return pixels > 0.0 ? nlohmann::ordered_json(std::sqrt(squared / (3.0 * pixels))) : nlohmann::ordered_json();
 }
 
-void Scores::add(const PictureId& id, const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
+void Scores::add(const PictureId& id, const image::RgbF32& linear, const ReferencePicture& reference, float exposure,
                  const PictureMasks& masks) {
     const image::RgbF32 shown = image::display_image(linear, exposure);
-    const image::RgbF32 expected = image::display_image(reference, exposure);
+    const image::RgbF32 expected = image::display_image(reference.mean, exposure);
+    const image::RgbF32 first = image::display_image(reference.halves[0], exposure);
+    const image::RgbF32 second = image::display_image(reference.halves[1], exposure);
     // Relative errors need a scale for their 0.01: that of the exposure.
     pictures_.push_back({id, image::rmse(shown, expected), image::ssim(shown, expected),
-                         image::relative_mse(exposed(linear, exposure), exposed(reference, exposure))});
+                         image::rmse_without_noise(shown, first, second),
+                         image::ssim_without_noise(shown, first, second),
+                         image::relative_mse(exposed(linear, exposure), exposed(reference.mean, exposure))});
     for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
         const glm::dvec3 difference = glm::dvec3(shown.pixels[i]) - glm::dvec3(expected.pixels[i]);
         const double squared = glm::dot(difference, difference);
@@ -77,6 +81,8 @@ nlohmann::ordered_json Scores::to_json() const {
     };
     return {{"rmse", mean(&PictureScore::rmse)},
             {"ssim", mean(&PictureScore::ssim)},
+            {"rmse_without_noise", mean(&PictureScore::rmse_without_noise)},
+            {"ssim_without_noise", mean(&PictureScore::ssim_without_noise)},
             {"relative_mse", mean(&PictureScore::relative_mse)},
             {"rmse_holes", holes_.rmse()},
             {"rmse_reused", reused_.rmse()},

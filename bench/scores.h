@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/picture_id.h"
-#include "core/image/image_file.h"
+#include "bench/reference_picture.h"
 
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -20,6 +20,8 @@ struct PictureScore {
     PictureId id;
     double rmse = 0.0;
     double ssim = 0.0;
+    double rmse_without_noise = 0.0; ///< of the reference
+    double ssim_without_noise = 0.0;
     double relative_mse = 0.0;
 };
 
@@ -38,11 +40,11 @@ Spread spread_of(const std::vector<double>& values);
 /// relMSE are means over pictures, as in the paper; those of parts of pictures are over all pixels of the part.
 class Scores {
 public:
-    void add(const PictureId& id, const image::RgbF32& linear, const image::RgbF32& reference, float exposure,
+    void add(const PictureId& id, const image::RgbF32& linear, const ReferencePicture& reference, float exposure,
              const PictureMasks& masks);
 
-    /// rmse, ssim, relative_mse, rmse_holes, rmse_reused, rmse_border, rmse_moving. null: no picture, or no such
-    /// pixels.
+    /// rmse, ssim, rmse_without_noise, ssim_without_noise, relative_mse, rmse_holes, rmse_reused, rmse_border,
+    /// rmse_moving. null: no picture, or no such pixels.
     nlohmann::ordered_json to_json() const;
     const std::vector<PictureScore>& pictures() const { return pictures_; }
 

@@ -7,6 +7,7 @@
 #include "core/image/ssim_window.h"
 #include "core/image/transfer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fieldcast::image {
@@ -79,6 +80,24 @@ Field window_mean(const Field& field) {
     return result;
 }
 
+void check_ssim_sizes(const RgbF32& image, const RgbF32& reference) {
+    check_sizes(image, reference);
+    FC_ASSERT(image.width_px > 2 * kSsimRadius && image.height_px > 2 * kSsimRadius, "the window fits into the image");
+}
+
+/// Of an image and a reference, whose mean square in each window is `mean_yy`.
+double mean_ssim(const Field& x, const Field& y, const Field& mean_yy) {
+    const Field mean_x = window_mean(x);
+    const Field mean_y = window_mean(y);
+    const Field mean_xx = window_mean(product(x, x));
+    const Field mean_xy = window_mean(product(x, y));
+    double sum = 0.0;
+    for (std::size_t i = 0; i < mean_x.values.size(); ++i) {
+        sum += ssim_of({mean_x.values[i], mean_y.values[i], mean_xx.values[i], mean_yy.values[i], mean_xy.values[i]});
+    }
+    return sum / static_cast<double>(mean_x.values.size());
+}
+
 } // namespace
 
 RgbF32 display_image(const RgbF32& linear, float exposure) {
@@ -111,20 +130,41 @@ double psnr_db(const RgbF32& image, const RgbF32& reference) {
 }
 
 double ssim(const RgbF32& image, const RgbF32& reference) {
-    check_sizes(image, reference);
-    FC_ASSERT(image.width_px > 2 * kSsimRadius && image.height_px > 2 * kSsimRadius, "the window fits into the image");
-    const Field x = luma_field(image);
+    check_ssim_sizes(image, reference);
     const Field y = luma_field(reference);
-    const Field mean_x = window_mean(x);
-    const Field mean_y = window_mean(y);
-    const Field mean_xx = window_mean(product(x, x));
-    const Field mean_yy = window_mean(product(y, y));
-    const Field mean_xy = window_mean(product(x, y));
+    return mean_ssim(luma_field(image), y, window_mean(product(y, y)));
+}
+
+double rmse_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second) {
+    check_sizes(image, first);
+    check_sizes(image, second);
     double sum = 0.0;
-    for (std::size_t i = 0; i < mean_x.values.size(); ++i) {
-        sum += ssim_of({mean_x.values[i], mean_y.values[i], mean_xx.values[i], mean_yy.values[i], mean_xy.values[i]});
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const glm::dvec3 pixel(image.pixels[i]);
+        sum += glm::dot(pixel - glm::dvec3(first.pixels[i]), pixel - glm::dvec3(second.pixels[i]));
     }
-    return sum / static_cast<double>(mean_x.values.size());
+    // Noise can bring a small sum below 0.
+    return std::sqrt(std::max(0.0, sum / (3.0 * static_cast<double>(image.pixels.size()))));
+}
+
+double ssim_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second) {
+    check_ssim_sizes(image, first);
+    check_ssim_sizes(image, second);
+    const Field a = luma_field(first);
+    const Field b = luma_field(second);
+    Field y = a;
+    for (std::size_t i = 0; i < y.values.size(); ++i) {
+        y.values[i] = (a.values[i] + b.values[i]) / 2.0;
+    }
+    const Field mean_a = window_mean(a);
+    const Field mean_b = window_mean(b);
+    Field mean_yy = window_mean(product(a, b));
+    for (std::size_t i = 0; i < mean_yy.values.size(); ++i) {
+        const double mean_y = (mean_a.values[i] + mean_b.values[i]) / 2.0;
+        const double covariance = mean_yy.values[i] - mean_a.values[i] * mean_b.values[i];
+        mean_yy.values[i] = mean_y * mean_y + std::max(0.0, covariance);
+    }
+    return mean_ssim(luma_field(image), y, mean_yy);
 }
 
 double relative_mse(const RgbF32& image, const RgbF32& reference) {

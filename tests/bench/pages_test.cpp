@@ -21,6 +21,7 @@ using testing::Not;
 
 Json quality_row(double rmse) {
     return {{"rmse", rmse},           {"ssim", 0.5},           {"relative_mse", 0.1},    {"rmse_holes", nullptr},
+            {"rmse_without_noise", rmse}, {"ssim_without_noise", 0.5},
             {"rmse_reused", rmse},    {"rmse_border", rmse},   {"rmse_moving", nullptr}, {"frame_ms", nullptr},
             {"traced_share", 0.0125}, {"discard_share", 0.02}, {"hole_paths", 17}};
 }

@@ -35,7 +35,7 @@ TEST(Scores, TellPartsOfPicturesApart) {
     picture.pixels[mover].g = 0.5F;
     picture.pixels[0] = glm::vec3(0.5F); // in the border
     Scores scores;
-    scores.add({11, {}}, picture, grey(0.0F), 2.0F, {mask_of({hole}), mask_of({mover, 5})});
+    scores.add({11, {}}, picture, noiseless(grey(0.0F)), 2.0F, {mask_of({hole}), mask_of({mover, 5})});
     const auto json = scores.to_json();
     const auto expect = [&](const char* key, double squared, double pixels) {
         EXPECT_NEAR(json[key].get<double>(), std::sqrt(squared / (3.0 * pixels)), kTolerance) << key;
@@ -52,8 +52,8 @@ TEST(Scores, TellPartsOfPicturesApart) {
 
 TEST(Scores, AreMeansOverPictures) {
     Scores scores;
-    scores.add({11, {}}, grey(0.5F), grey(0.5F), 1.0F, {});
-    scores.add({23, {2, 2}}, grey(0.5F), grey(0.0F), 1.0F, {});
+    scores.add({11, {}}, grey(0.5F), noiseless(grey(0.5F)), 1.0F, {});
+    scores.add({23, {2, 2}}, grey(0.5F), noiseless(grey(0.0F)), 1.0F, {});
     const double difference = static_cast<double>(image::srgb_from_linear(0.5F));
     const auto json = scores.to_json();
     EXPECT_NEAR(json["rmse"].get<double>(), difference / 2.0, kTolerance);
@@ -68,7 +68,7 @@ TEST(Scores, AreMeansOverPictures) {
 
 TEST(Scores, OfNothingAreNull) {
     const auto json = Scores().to_json();
-    EXPECT_EQ(json.size(), 7U);
+    EXPECT_EQ(json.size(), 9U);
     for (const auto& [key, value] : json.items()) {
         EXPECT_TRUE(value.is_null()) << key;
     }
