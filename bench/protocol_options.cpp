@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/protocol_options.h"
 
+#include <set>
+
 namespace fieldcast::bench {
 
 void add_protocol_options(CLI::App& command, ProtocolOptions& options) {
@@ -8,6 +10,9 @@ void add_protocol_options(CLI::App& command, ProtocolOptions& options) {
     command.add_option("--protocol", options.protocol, "reduced (two processor cores) or full (a GPU)")
         ->capture_default_str();
     command.add_option("--size", options.size, "size of source and views; default: the protocol's");
+    command.add_option("--frames", options.frames, "frames to score, such as 11,29; default: the protocol's")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 10'000));
     command.add_option("--spp", options.reference_samples, "samples of the references; default: the protocol's")
         ->check(CLI::Range(1, 1 << 20));
     command.add_option("--references", options.references, "folder of the references, which are kept")
@@ -20,6 +25,10 @@ Protocol chosen_protocol(const ProtocolOptions& options) {
     if (!options.size.empty()) {
         protocol.size = parse_size("--size", options.size);
     }
+    if (!options.frames.empty()) {
+        const std::set<std::uint32_t> frames(options.frames.begin(), options.frames.end());
+        protocol.frames.assign(frames.begin(), frames.end());
+    }
     if (options.reference_samples > 0) {
         protocol.reference_samples = options.reference_samples;
     }
@@ -28,7 +37,8 @@ Protocol chosen_protocol(const ProtocolOptions& options) {
 
 std::string describe(const Protocol& protocol) {
     return protocol.name + " protocol: " + std::to_string(protocol.size.width_px) + "x" +
-           std::to_string(protocol.size.height_px) + ", " + std::to_string(protocol.frames.size()) + " frames, " +
+           std::to_string(protocol.size.height_px) + ", " + std::to_string(protocol.frames.size()) +
+           (protocol.frames.size() == 1 ? " frame, " : " frames, ") +
            std::to_string(protocol.views.size()) + " views of 6x6, references of " +
            std::to_string(protocol.reference_samples) + " samples";
 }

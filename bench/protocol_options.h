@@ -15,6 +15,7 @@ struct ProtocolOptions {
     std::string size; ///< empty: the protocol's
     std::string device;
     std::string references = ".cache/references";
+    std::vector<std::uint32_t> frames;   ///< empty: the protocol's
     std::uint32_t reference_samples = 0; ///< 0: the protocol's
 };
 

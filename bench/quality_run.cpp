@@ -143,6 +143,7 @@ nlohmann::ordered_json QualityRun::result() const {
     nlohmann::ordered_json json{{"scene", settings_.scene.title},
                                 {"protocol", settings_.protocol.name},
                                 {"size", to_string(settings_.protocol.size)},
+                                {"frames", settings_.protocol.frames},
                                 {"reference_samples", settings_.protocol.reference_samples},
                                 {"rendered_views", settings_.renders_scored_views_only ? "scored" : "all"},
                                 {"exposure", exposure_}};

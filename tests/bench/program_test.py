@@ -162,11 +162,12 @@ class Program(unittest.TestCase):
         self.expect_user_error(call("report", out, "--html", self.folder / "b.html"), "quality.json")
 
     def test_grids(self):
-        self.expect_good(call("grids", *self.references, "--grids", "1x2,2x2", "--json", self.folder / "g.json", "--csv",
+        self.expect_good(call("grids", *self.references, "--frames", "2,1", "--grids", "1x2,2x2", "--json", self.folder / "g.json", "--csv",
                               self.folder / "g.csv", "--html", self.folder / "g.html"))
         result = json.loads((self.folder / "g.json").read_text())
         self.assertEqual(["1x2", "2x2"], [row["grid"] for row in result["grids"]])
         self.assertEqual([2, 4], [len(row["views"]) for row in result["grids"]])
+        self.assertEqual([2], result["frames"])  # of those, the last
         self.assertAlmostEqual(result["grids"][0]["ssim"] - result["grids"][1]["ssim"], result["ssim_lost"])
         self.assertEqual(2, len(self.table("g.csv")))
         self.assertIn("Cost", self.headings("g.html"))
@@ -192,7 +193,7 @@ class Program(unittest.TestCase):
         self.assertGreaterEqual(json.loads(sidecars[0].read_text())["samples_per_pixel"], 16)
         before = sidecars[0].stat().st_mtime_ns
         self.assertEqual(0, call(*command, 16).returncode)
-        self.assertEqual(15, len(list(folder.rglob("*.exr"))))
+        self.assertEqual(2 * 15, len(list(folder.rglob("*.exr"))))  # two halves of each
         self.assertEqual(before, sidecars[0].stat().st_mtime_ns)  # had enough samples
         self.assertEqual([], [path for path in folder.rglob("*") if path.name.endswith(".part")])
 
