@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
+#include "shaders/shared/bmfr.h"
 
 #include <algorithm>
 
@@ -11,14 +12,17 @@ namespace fieldcast::render {
 
 namespace {
 
-// Accumulation: this frame and the one before (geometry, two colours, moments, length) and two noisy colours. The
-// denoiser's scratch: two more pairs of colours.
+// Accumulation: this frame and the one before (geometry, two colours, moments, length) and two noisy colours. Either
+// denoiser: two more pairs of colours. BMFR: taps, and one fit per block, of which there is one more in each direction
+// than fit into the view; counted as two per 32×32 pixels.
 constexpr std::uint64_t kBytesToAccumulate = 2 * (16 + 2 * 16 + 16 + 4) + 2 * 16;
 constexpr std::uint64_t kBytesToDenoise = 2 * 2 * 16;
+constexpr std::uint64_t kBytesToFit = sizeof(shared::HistoryTaps) + (2 * sizeof(shared::BlockFit) + 1023) / 1024;
 
 std::uint64_t bytes_per_pixel(const RenderSettings& settings) {
     const bool denoises = settings.route == Route::kRed && settings.denoiser != Denoiser::kNone;
-    return kBytesToAccumulate + (denoises ? kBytesToDenoise : 0);
+    return kBytesToAccumulate + (denoises ? kBytesToDenoise : 0) +
+           (denoises && settings.denoiser == Denoiser::kBmfr ? kBytesToFit : 0);
 }
 
 } // namespace

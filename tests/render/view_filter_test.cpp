@@ -285,7 +285,11 @@ TEST_F(ViewFilterTest, MoreViewsThanTheDeviceHasRoomForAreRefused) {
     } catch (const UserError& error) {
         EXPECT_NE(std::string(error.what()).find("72 views of 8192x8192"), std::string::npos) << error.what();
     }
-    EXPECT_GT(ViewFilter::max_pixels(device(), header.settings), 36U * 320 * 180);
+    const std::uint64_t most = ViewFilter::max_pixels(device(), header.settings);
+    EXPECT_GT(most, 36U * 320 * 180);
+    const std::uint64_t most_fitted = ViewFilter::max_pixels(device(), red_header(0, Denoiser::kBmfr).settings);
+    EXPECT_LE(most_fitted, most); // BMFR keeps more
+    EXPECT_GT(most_fitted, most / 2);
 }
 
 } // namespace
