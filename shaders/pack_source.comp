@@ -13,7 +13,11 @@ void main() {
     uint item = linear_index();
     if (item < params.pixel_count) {
         uint pixel = params.first_pixel + item;
-        params.diffuse.at[pixel] = pack_r11g11b10(params.diffuse_in.at[pixel].rgb);
+        vec3 diffuse = params.diffuse_in.at[pixel].rgb;
+        if (params.is_punctual_apart != 0u) {
+            diffuse += params.punctual_in.at[pixel].rgb;
+        }
+        params.diffuse.at[pixel] = pack_r11g11b10(diffuse);
         params.specular.at[pixel] = pack_r11g11b10(params.specular_in.at[pixel].rgb);
     }
 }

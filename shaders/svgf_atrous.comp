@@ -8,24 +8,7 @@
 layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { FilterParams params; };
 
-#include "lib/filter_taps.glsl"
-
-struct Signal {
-    vec4 sum;    // colour, variance
-    float total; // of the weights
-    float sigma; // of luminance
-    float centre_luminance;
-};
-
-void add_tap(inout Signal s, vec4 value, float weight) {
-    float w = weight * exp(-abs(luminance(value.rgb) - s.centre_luminance) / s.sigma);
-    s.sum += vec4(value.rgb * w, value.a * w * w);
-    s.total += w;
-}
-
-vec4 resolve(Signal s) {
-    return vec4(s.sum.rgb / s.total, s.sum.a / (s.total * s.total));
-}
+#include "lib/filter_signal.glsl"
 
 // 3×3 Gaussian of the variances (diffuse, specular), which are themselves noisy.
 vec2 blurred_variance(Centre c, vec2 centre) {
@@ -42,10 +25,6 @@ vec2 blurred_variance(Centre c, vec2 centre) {
         }
     }
     return sum / total;
-}
-
-Signal make_signal(vec4 centre, float variance) {
-    return Signal(centre, 1.0, params.sigma_luminance * sqrt(max(variance, 0.0)) + 1e-4, luminance(centre.rgb));
 }
 
 // Brightest luminance (diffuse, specular) of the eight pixels around on the same surface; negative: there are none.
@@ -87,7 +66,6 @@ void main() {
     vec2 variance = blurred_variance(c, vec2(diffuse.a, specular.a));
     Signal d = make_signal(diffuse, variance.x);
     Signal s = make_signal(specular, variance.y);
-    const float kernel[3] = float[3](1.0, 2.0 / 3.0, 1.0 / 6.0);
     int side = 2 * params.radius + 1;
     for (int i = 0; i < side * side; ++i) {
         ivec2 tap = ivec2(i % side, i / side) - params.radius;
@@ -96,7 +74,7 @@ void main() {
         if (tap != ivec2(0) && is_inside(at)) {
             int texel = tap_texel(c, at);
             uvec4 other = texelFetch(geometry_, texel);
-            float weight = kernel[abs(tap.x)] * kernel[abs(tap.y)] * geometry_weight(c, offset, other);
+            float weight = kFilterKernel[abs(tap.x)] * kFilterKernel[abs(tap.y)] * geometry_weight(c, offset, other);
             if (weight > 1e-4) {
                 add_tap(d, texelFetch(diffuse_, texel), weight);
                 float alike = params.follows_lobes != 0u ? lobe_similarity(c, offset, other) : 1.0;

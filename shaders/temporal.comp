@@ -19,6 +19,8 @@ layout(set = 1, binding = kTemporalPreviousMoments) uniform samplerBuffer previo
 layout(set = 1, binding = kTemporalPreviousLength) uniform samplerBuffer previous_length_;
 layout(set = 1, binding = kTemporalDiffuse) uniform samplerBuffer diffuse_;
 layout(set = 1, binding = kTemporalSpecular) uniform samplerBuffer specular_;
+layout(set = 1, binding = kTemporalPunctual) uniform samplerBuffer punctual_;
+layout(set = 1, binding = kTemporalPreviousPunctual) uniform samplerBuffer previous_punctual_;
 layout(push_constant, scalar) uniform Push { TemporalParams params; };
 
 const float kMaxHistory = 64.0;
@@ -28,6 +30,7 @@ struct History {
     vec3 diffuse;
     vec3 specular;
     vec4 moments;
+    vec4 punctual; // rgb, second moment of its luminance
     float frames;
     float weight;
     uint accepted; // HistoryTaps
@@ -61,12 +64,19 @@ int past_texel(CameraRecord camera, uint page, ivec2 at, Past past, float slack)
     return same ? texel : -1;
 }
 
+bool is_punctual_apart() {
+    return (params.flags & kFlagPunctualApart) != 0u;
+}
+
 void gather(CameraRecord camera, uint page, ivec2 at, float weight, Past past, uint bit, inout History sum) {
     int texel = weight > 0.0 ? past_texel(camera, page, at, past, 1.0) : -1;
     if (texel >= 0) {
         sum.diffuse += weight * texelFetch(previous_diffuse_, texel).rgb;
         sum.specular += weight * texelFetch(previous_specular_, texel).rgb;
         sum.moments += weight * texelFetch(previous_moments_, texel);
+        if (is_punctual_apart()) {
+            sum.punctual += weight * texelFetch(previous_punctual_, texel);
+        }
         sum.frames += weight * texelFetch(previous_length_, texel).x;
         sum.weight += weight;
         sum.accepted |= 1u << bit;
@@ -89,6 +99,7 @@ void sharpen(CameraRecord camera, uint page, vec2 p, Past past, inout History su
     vec4 row = catmull_rom(f.y);
     vec3 diffuse = vec3(0.0);
     vec3 specular = vec3(0.0);
+    vec3 punctual = vec3(0.0);
     for (int i = 0; i < 16; ++i) {
         int texel = past_texel(camera, page, first + ivec2(i & 3, i >> 2), past, 2.0);
         if (texel < 0) {
@@ -97,13 +108,17 @@ void sharpen(CameraRecord camera, uint page, vec2 p, Past past, inout History su
         float weight = column[i & 3] * row[i >> 2];
         diffuse += weight * texelFetch(previous_diffuse_, texel).rgb;
         specular += weight * texelFetch(previous_specular_, texel).rgb;
+        if (is_punctual_apart()) {
+            punctual += weight * texelFetch(previous_punctual_, texel).rgb;
+        }
     }
+    sum.punctual.rgb = max(punctual, vec3(0.0)) * sum.weight;
     sum.diffuse = max(diffuse, vec3(0.0)) * sum.weight;
     sum.specular = max(specular, vec3(0.0)) * sum.weight;
 }
 
 History gather_history(CameraRecord camera, uint page, vec2 p, Past past) {
-    History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), 0.0, 0.0, 0u);
+    History sum = History(vec3(0.0), vec3(0.0), vec4(0.0), vec4(0.0), 0.0, 0.0, 0u);
     vec2 corner = floor(p - 0.5);
     vec2 f = p - 0.5 - corner;
     ivec2 base = ivec2(corner);
@@ -162,6 +177,12 @@ void store(uint pixel, vec3 diffuse, vec3 specular, vec4 moments, float frames) 
     params.history_length.at[pixel] = frames;
 }
 
+void store_punctual(uint pixel, vec4 punctual) {
+    if (is_punctual_apart()) {
+        params.punctual.at[pixel] = punctual;
+    }
+}
+
 void keep_taps(uint pixel, vec2 position, uint accepted) {
     if ((params.flags & kFlagKeepTaps) != 0u) {
         params.taps.at[pixel] = HistoryTaps(position, accepted);
@@ -179,10 +200,13 @@ void main() {
     float l_diffuse = luminance(diffuse);
     float l_specular = luminance(specular);
     vec4 moments = vec4(l_diffuse, l_diffuse * l_diffuse, l_specular, l_specular * l_specular);
+    vec4 punctual = is_punctual_apart() ? texelFetch(punctual_, int(index)) : vec4(0.0);
+    punctual.a = luminance(punctual.rgb) * luminance(punctual.rgb);
     Visibility seen = page_visibility(params.visibility, params.layers, at.page, params.source_count,
                                       view_stride(params.width, params.height), at.pixel);
     if ((params.flags & kFlagTemporal) == 0u || seen.instance == kNoInstance) {
         store(index, diffuse, specular, moments, 1.0);
+        store_punctual(index, punctual);
         keep_taps(index, vec2(0.0), 0u);
         return;
     }
@@ -195,6 +219,7 @@ void main() {
     History history = gather_history(before, at.page, p.xy, past);
     if (!(p.z > 0.0) || history.weight < 0.01) {
         store(index, diffuse, specular, moments, 1.0);
+        store_punctual(index, punctual);
         keep_taps(index, vec2(0.0), 0u);
         return;
     }
@@ -216,4 +241,5 @@ void main() {
     store(index, mix(history.diffuse * scale, diffuse, alpha),
           mix(history.specular * scale, specular, 1.0 - (1.0 - alpha) * stays),
           mix(history.moments * scale, moments, fresh), frames);
+    store_punctual(index, mix(history.punctual * scale, punctual, moments_alpha));
 }

@@ -18,9 +18,10 @@ void add_samples(uint index, uvec2 pixel, Surface s, vec3 direction, float cone_
         uint number = params.first_sample + i;
         Sampler rng = is_shared ? make_screen_sampler(seed, number, pixel) : make_sampler(seed, number);
         Illumination one = trace_path(info, settings, s, direction, cone_width, cone_spread, rng);
-        if (is_finite(one.diffuse + one.specular)) {
+        if (is_finite(one.diffuse + one.specular + one.punctual)) {
             sum.diffuse += one.diffuse;
             sum.specular += one.specular;
+            sum.punctual += one.punctual;
         } else {
             atomicAdd(params.invalid_samples.at[0], 1u);
         }
@@ -36,7 +37,7 @@ void main() {
     uint index = id.z * params.width * params.height + pixel;
     Visibility seen = page_visibility(params.visibility, params.layers, id.z, params.source_count,
                                       view_stride(params.width, params.height), pixel);
-    Illumination sum = Illumination(vec3(0.0), vec3(0.0));
+    Illumination sum = kNoIllumination;
     if (seen.instance != kNoInstance) {
         CameraRecord camera = params.cameras.at[source_of_page(id.z, params.source_count)];
         vec3 direction = camera_direction(camera, vec2(id.xy) + 0.5);
@@ -48,6 +49,10 @@ void main() {
         add_samples(index, id.xy, s, direction, cone_width, 1.0 / camera.focal_px, sum);
     }
     float scale = 1.0 / float(params.samples_per_pixel);
-    params.diffuse.at[index] = vec4(sum.diffuse * scale, 0.0);
+    bool is_apart = (params.path & kPathPunctualApart) != 0u;
+    params.diffuse.at[index] = vec4((is_apart ? sum.diffuse : sum.diffuse + sum.punctual) * scale, 0.0);
+    if (is_apart) {
+        params.punctual.at[index] = vec4(sum.punctual * scale, 0.0);
+    }
     params.specular.at[index] = vec4(sum.specular * scale, 0.0);
 }

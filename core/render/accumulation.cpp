@@ -42,18 +42,26 @@ void SourceHistory::resize(const gpu::Device& device, std::uint32_t pixel_count)
 }
 
 Accumulation::Accumulation(const gpu::Device& device, const scene::GpuScene& scene)
-    : device_(device), scene_(scene), layout_(device, texel_bindings(8)),
+    : device_(device), scene_(scene), layout_(device, texel_bindings(10)),
       kernel_(make_scene_kernel(device, scene, KernelId::kTemporal, sizeof(shared::TemporalParams), {&layout_})) {}
 
-void Accumulation::resize(std::uint32_t texel_count) {
-    if (texel_count == texel_count_) {
+void Accumulation::resize(std::uint32_t texel_count, bool is_punctual_apart) {
+    if (texel_count == texel_count_ && is_punctual_apart == static_cast<bool>(noisy_punctual_.buffer)) {
         return;
     }
     texel_count_ = texel_count;
     for (SourceHistory& history : history_) {
         history.resize(device_, texel_count);
+        history.punctual = {};
     }
     noisy_.resize(device_, texel_count);
+    noisy_punctual_ = {};
+    if (is_punctual_apart) {
+        noisy_punctual_.resize(device_, texel_count);
+        for (SourceHistory& history : history_) {
+            history.punctual.resize(device_, texel_count);
+        }
+    }
     taps_ = {};
     bind();
 }
@@ -71,6 +79,10 @@ void Accumulation::bind() {
         set.set(shared::kTemporalPreviousLength, before.length_view);
         set.set(shared::kTemporalDiffuse, noisy_.diffuse.view);
         set.set(shared::kTemporalSpecular, noisy_.specular.view);
+        // Never read unless it is kept apart.
+        const bool is_apart = static_cast<bool>(noisy_punctual_.buffer);
+        set.set(shared::kTemporalPunctual, is_apart ? noisy_punctual_.view : noisy_.diffuse.view);
+        set.set(shared::kTemporalPreviousPunctual, is_apart ? before.punctual.view : before.light.diffuse.view);
     }
 }
 
@@ -85,6 +97,7 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.diffuse = now().light.diffuse.buffer.address();
     params.specular = now().light.specular.buffer.address();
     params.moments = now().moments.address();
+    params.punctual = frame.is_punctual_apart ? now().punctual.buffer.address() : 0;
     params.history_length = now().length.address();
     params.taps = options.keeps_taps ? taps_.address() : 0;
     params.width = frame.width;
@@ -93,7 +106,8 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.source_count = frame.source_count;
     params.flags = (frame.has_history ? shared::kFlagTemporal : 0) |
                    (options.is_sharp ? shared::kFlagSharpHistory : 0) |
-                   (options.follows_lobes ? shared::kFlagFollowLobes : 0) | (options.keeps_taps ? shared::kFlagKeepTaps : 0);
+                   (options.follows_lobes ? shared::kFlagFollowLobes : 0) | (options.keeps_taps ? shared::kFlagKeepTaps : 0) |
+                   (frame.is_punctual_apart ? shared::kFlagPunctualApart : 0);
     params.alpha = frame.least_weight * options.share;
     params.moments_alpha = frame.least_weight;
     recorder.stage("temporal");

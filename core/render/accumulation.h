@@ -32,6 +32,7 @@ struct SourceHistory {
     Light light;          ///< rgb, variance
     gpu::Buffer moments;
     gpu::Buffer length;
+    LightBuffer punctual; ///< rgb, second moment of luminance; empty unless it is kept apart
     gpu::TexelView geometry_view;
     gpu::TexelView moments_view;
     gpu::TexelView length_view;
@@ -50,6 +51,7 @@ struct FilterFrame {
     std::uint32_t page_count = 1;
     std::uint32_t source_count = 1;
     bool has_history = false; ///< that may enter the average
+    bool is_punctual_apart = false; ///< as the accumulation was resized
     bool is_still = false;    ///< one of a series that is averaged and not filtered
     float least_weight = 1.0F; ///< of the new frame in the average
     std::uint32_t number = 0; ///< of the frame: what varies from frame to frame
@@ -64,7 +66,9 @@ class Accumulation {
 public:
     Accumulation(const gpu::Device& device, const scene::GpuScene& scene);
 
-    void resize(std::uint32_t texel_count); ///< pixels of all pages
+    /// `texel_count`: pixels of all pages. `is_punctual_apart`: light straight from punctual lights has a history of its
+    /// own, short and unlimited, so that the noise of other light does not blur its shadows.
+    void resize(std::uint32_t texel_count, bool is_punctual_apart);
     std::uint32_t texel_count() const { return texel_count_; }
 
     /// The new frame's share of the average is at least `share` · least_weight. `is_sharp`: the history is interpolated
@@ -79,6 +83,7 @@ public:
     void record(gpu::Recorder& recorder, const FilterFrame& frame, const Options& options);
 
     const Light& noisy() const { return noisy_; }
+    const LightBuffer& noisy_punctual() const { return noisy_punctual_; } ///< empty unless it is kept apart
     /// Of this frame: its geometry from the beginning, the rest once record() ran. Filters may replace its
     /// illumination.
     const SourceHistory& now() const { return history_[current_]; }
@@ -100,6 +105,7 @@ private:
     std::uint32_t current_ = 0;
     std::array<SourceHistory, 2> history_;
     Light noisy_;
+    LightBuffer noisy_punctual_;
     gpu::Buffer taps_;
     std::array<gpu::BindingSet, 2> sets_; ///< by current_
 };

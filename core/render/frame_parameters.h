@@ -31,6 +31,14 @@ inline bool filters_views(const FrameHeader& header) {
     return denoises_views(header) || (header.settings.accumulate_views && header.still_frames == 0);
 }
 
+/// Diffuse light straight from punctual lights is traced, averaged and filtered apart from other light: where the source
+/// is denoised by SVGF+ and each kind of light has a sample of its own.
+inline bool keeps_punctual_apart(const FrameHeader& header) {
+    const RenderSettings& settings = header.settings;
+    return settings.denoiser == Denoiser::kSvgfPlus && settings.route == Route::kGreen &&
+           settings.next_event_estimation && settings.light_sampling.each_kind;
+}
+
 /// Hole filling of a frame: one that is an average of still frames averages its holes as well, without bias; views that
 /// are averaged or denoised as a whole do that to their holes.
 inline HoleFilling hole_filling(const FrameHeader& header) {

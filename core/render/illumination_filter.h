@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/render/bmfr.h"
+#include "core/render/punctual_filter.h"
 #include "core/render/svgf.h"
 
 namespace fieldcast::render {
@@ -11,17 +12,25 @@ class IlluminationFilter {
 public:
     IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene);
 
-    void resize(std::uint32_t texel_count) { accumulation_.resize(texel_count); } ///< pixels of all pages
+    /// `texel_count`: pixels of all pages. `is_punctual_apart`: the path tracer writes diffuse light that comes straight
+    /// from punctual lights to `noisy_punctual()`; only for SVGF+.
+    void resize(std::uint32_t texel_count, bool is_punctual_apart = false) {
+        accumulation_.resize(texel_count, is_punctual_apart);
+    }
 
     /// Where the path tracer writes its noisy illumination, and source_surfaces.comp the geometry of this frame.
     const gpu::Buffer& noisy_diffuse() const { return accumulation_.noisy().diffuse.buffer; }
     const gpu::Buffer& noisy_specular() const { return accumulation_.noisy().specular.buffer; }
+    const gpu::Buffer& noisy_punctual() const { return accumulation_.noisy_punctual().buffer; }
     const gpu::Buffer& geometry() const { return accumulation_.now().geometry; }
 
     /// Records what the settings ask for. The result is in `diffuse()` and `specular()`.
     void record(gpu::Recorder& recorder, const FilterFrame& frame);
     const gpu::Buffer& diffuse() const { return result_->diffuse.buffer; }
     const gpu::Buffer& specular() const { return result_->specular.buffer; }
+
+    /// What is to be added to `diffuse()`; null: nothing.
+    const gpu::Buffer* punctual() const { return punctual_result_; }
 
     /// This frame's data become the history of the next one.
     void swap() { accumulation_.swap(); }
@@ -30,7 +39,9 @@ private:
     Accumulation accumulation_;
     Svgf svgf_;
     Bmfr bmfr_;
+    PunctualFilter punctual_;
     const Light* result_ = nullptr;
+    const gpu::Buffer* punctual_result_ = nullptr;
 };
 
 } // namespace fieldcast::render

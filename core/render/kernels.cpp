@@ -8,6 +8,7 @@
 #include "shaders/composite_layers_rayquery.spv.h"
 #include "shaders/count_holes.spv.h"
 #include "shaders/filter_holes.spv.h"
+#include "shaders/filter_punctual.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
 #include "shaders/keep_holes.spv.h"
@@ -58,6 +59,7 @@ const EmbeddedKernel kKernels[] = {
     {KernelId::kCompositeLayers, "composite_layers", composite_layers_bvh_spv, composite_layers_rayquery_spv},
     {KernelId::kCountHoles, "count_holes", count_holes_spv, count_holes_spv},
     {KernelId::kFilterHoles, "filter_holes", filter_holes_spv, filter_holes_spv},
+    {KernelId::kFilterPunctual, "filter_punctual", filter_punctual_spv, filter_punctual_spv},
     {KernelId::kFinishList, "finish_list", finish_list_spv, finish_list_spv},
     {KernelId::kInterleaveSource, "interleave_source", interleave_source_spv, interleave_source_spv},
     {KernelId::kKeepHoles, "keep_holes", keep_holes_spv, keep_holes_spv},

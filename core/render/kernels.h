@@ -13,6 +13,7 @@ enum class KernelId {
     kCascadeHoles,
     kCountHoles,
     kFilterHoles,
+    kFilterPunctual,
     kFinishList,
     kInterleaveSource,
     kKeepHoles,

@@ -37,7 +37,12 @@ struct SourceRenderer::State {
     void record_trace();
     void record_filter(bool has_history, bool is_still);
     void record_pack();
-    void pack_pages(std::uint32_t first, std::uint32_t count, const gpu::Buffer& diffuse, const gpu::Buffer& specular);
+    struct Packed {
+        const gpu::Buffer& diffuse;
+        const gpu::Buffer& specular;
+        const gpu::Buffer* punctual = nullptr; ///< more diffuse light, if not null
+    };
+    void pack_pages(std::uint32_t first, std::uint32_t count, const Packed& light);
 
     const gpu::Device& device;
     const scene::GpuScene& scene;
@@ -51,12 +56,13 @@ struct SourceRenderer::State {
     gpu::Buffer invalid_samples;
     std::vector<Camera> previous; ///< of the sources of the frame before
     FrameHeader last;             ///< header of that frame
+    bool is_punctual_apart = false;
     bool has_stored_history = false; ///< the frame before accumulated or filtered
 };
 
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
     const Camera now = widened_source(header, 0);
-    return has_stored_history && !header.cut && previous.size() == header.source_positions.size() &&
+    return has_stored_history && !header.cut && keeps_punctual_apart(header) == keeps_punctual_apart(last) && previous.size() == header.source_positions.size() &&
            previous[0].width_px == now.width_px && previous[0].height_px == now.height_px;
 }
 
@@ -85,6 +91,7 @@ void SourceRenderer::State::record_trace() {
     params.layers = surfaces.layers().address();
     params.diffuse = filter.noisy_diffuse().address();
     params.specular = filter.noisy_specular().address();
+    params.punctual = is_punctual_apart ? filter.noisy_punctual().address() : 0;
     params.invalid_samples = invalid_samples.address();
     params.width = camera.width_px;
     params.height = camera.height_px;
@@ -92,7 +99,7 @@ void SourceRenderer::State::record_trace() {
     params.first_sample = header.noise_frame * header.settings.samples_per_pixel;
     params.samples_per_pixel = header.settings.samples_per_pixel;
     params.source_count = planes.source_count();
-    params.path = path_bits(header.settings);
+    params.path = path_bits(header.settings) | (is_punctual_apart ? shared::kPathPunctualApart : 0U);
     params.max_indirect = max_indirect(header);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
@@ -111,6 +118,7 @@ void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
                              .page_count = planes.page_count(),
                              .source_count = planes.source_count(),
                              .has_history = has_history,
+                             .is_punctual_apart = is_punctual_apart,
                              .is_still = is_still,
                              .least_weight = least_weight(header),
                              .number = header.noise_frame,
@@ -122,19 +130,21 @@ void SourceRenderer::State::record_pack() {
     const std::uint32_t pages = planes.page_count();
     const std::uint32_t noisy_pages = denoises_views(planes.header()) ? planes.source_count() : 0;
     recorder.stage("pack");
-    pack_pages(0, noisy_pages, filter.noisy_diffuse(), filter.noisy_specular());
-    pack_pages(noisy_pages, pages - noisy_pages, filter.diffuse(), filter.specular());
+    pack_pages(0, noisy_pages, {.diffuse = filter.noisy_diffuse(), .specular = filter.noisy_specular()});
+    pack_pages(noisy_pages, pages - noisy_pages,
+               {.diffuse = filter.diffuse(), .specular = filter.specular(), .punctual = filter.punctual()});
     recorder.barrier();
 }
 
-void SourceRenderer::State::pack_pages(std::uint32_t first, std::uint32_t count, const gpu::Buffer& diffuse,
-                                       const gpu::Buffer& specular) {
+void SourceRenderer::State::pack_pages(std::uint32_t first, std::uint32_t count, const Packed& light) {
     if (count == 0) {
         return;
     }
     shared::PackParams params{};
-    params.diffuse_in = diffuse.address();
-    params.specular_in = specular.address();
+    params.diffuse_in = light.diffuse.address();
+    params.specular_in = light.specular.address();
+    params.punctual_in = light.punctual != nullptr ? light.punctual->address() : 0;
+    params.is_punctual_apart = light.punctual != nullptr ? 1 : 0;
     params.diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
     params.specular = planes.plane(PlaneSemantic::kSpecular).address();
     params.first_pixel = first * planes.pixel_count();
@@ -157,7 +167,8 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     const bool has_history = is_still ? timed.still_frames > 1 // a series begins with its own first frame
                                       : s.has_history(header) && header.settings.temporal_accumulation;
     s.planes.resize(timed);
-    s.filter.resize(s.planes.texel_count());
+    s.is_punctual_apart = keeps_punctual_apart(timed) && !s.scene.scene().lights.empty();
+    s.filter.resize(s.planes.texel_count(), s.is_punctual_apart);
     s.upload_cameras();
 
     s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.filter.geometry());

@@ -16,19 +16,19 @@ uint pixel_seed(uint view_seed, uint x, uint y) {
 Illumination trace_illumination(PathSettings settings, uint samples, UintBuffer counters, Surface s, vec3 direction,
                                 float cone_width, float cone_spread, uint seed) {
     SceneInfo info = load_scene_info();
-    Illumination sum = Illumination(vec3(0.0), vec3(0.0));
+    Illumination sum = kNoIllumination;
     for (uint i = 0u; i < samples; ++i) {
         Sampler rng = make_sampler(seed, i);
         Illumination one = trace_path(info, settings, s, direction, cone_width, cone_spread, rng);
-        if (is_finite(one.diffuse + one.specular)) {
-            sum.diffuse += one.diffuse;
+        if (is_finite(one.diffuse + one.specular + one.punctual)) {
+            sum.diffuse += one.diffuse + one.punctual;
             sum.specular += one.specular;
         } else {
             atomicAdd(counters.at[kCounterInvalidSamples], 1u);
         }
     }
     float scale = 1.0 / float(samples);
-    return Illumination(sum.diffuse * scale, sum.specular * scale);
+    return Illumination(sum.diffuse * scale, sum.specular * scale, vec3(0.0));
 }
 
 vec3 trace_radiance(TraceListParams params, Surface s, vec3 direction, float cone_width, float cone_spread, uint seed) {

@@ -30,7 +30,9 @@ PathSettings make_path_settings(uint path, float max_indirect) {
 struct Illumination {
     vec3 diffuse;
     vec3 specular;
+    vec3 punctual; // where each kind of light has its sample: diffuse, straight from punctual lights; not in `diffuse`
 };
+const Illumination kNoIllumination = Illumination(vec3(0.0), vec3(0.0), vec3(0.0));
 
 float power_heuristic(float a, float b) { // a > 0; squares of densities themselves may overflow
     float ratio = b / a;
@@ -47,6 +49,8 @@ struct LightShare {
     float from;
     float to;
 };
+
+const uint kPunctualKind = 2u;
 
 LightShare share_of_kind(SceneInfo info, uint kind) {
     float environment = info.probability_environment;
@@ -143,7 +147,7 @@ vec3 limit_luminance(vec3 c, float limit) {
 // One path from `s`, seen along unit `direction`; `cone_width_m` and `cone_spread` for texture detail.
 Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 direction, float cone_width_m,
                         float cone_spread, inout Sampler rng) {
-    Illumination result = Illumination(vec3(0.0), vec3(0.0));
+    Illumination result = kNoIllumination;
     Bsdf b = make_bsdf(s, direction);
     vec3 modulation = b.specular_modulation;
     vec3 first_diffuse = vec3(0.0); // of the first vertex's sampled direction: value over density
@@ -166,7 +170,11 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
                 BsdfValue value;
                 vec3 light = sample_direct(info, s, b, share, settings.light_candidates, choices.x, light_u, picks.x, value);
                 if (bounce == 0u) {
-                    result.diffuse += light * value.diffuse;
+                    if (each_kind && kind == kPunctualKind) {
+                        result.punctual = light * value.diffuse;
+                    } else {
+                        result.diffuse += light * value.diffuse;
+                    }
                     result.specular += light * value.specular / modulation;
                 } else {
                     indirect += throughput * light * (value.diffuse * b.diffuse_modulation + value.specular);

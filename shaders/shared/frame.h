@@ -54,12 +54,14 @@ const uint kFlagReflections = 16;
 const uint kFlagSharpHistory = 32;
 const uint kFlagFollowLobes = 64;
 const uint kFlagKeepLight = 128;
+const uint kFlagPunctualApart = 256;
 
 // How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
 const uint kPathCandidatesShift = 16;
 const uint kPathNextEventEstimation = 1u << 24;
 const uint kPathEachLightKind = 1u << 25;
 const uint kPathScreenSampler = 1u << 26;
+const uint kPathPunctualApart = 1u << 27;
 
 // trace_source.comp: path traces every pixel of the sources, every page.
 struct TraceSourceParams {
@@ -68,6 +70,7 @@ struct TraceSourceParams {
     VisibilityBuffer layers;
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
     Vec4Buffer specular;         // out
+    Vec4Buffer punctual;         // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
     UintBuffer invalid_samples;  // counter
     uint width;
     uint height;
@@ -132,6 +135,7 @@ struct TemporalParams {
     Vec4Buffer diffuse;          // in: noisy; out: accumulated, a = variance of luminance
     Vec4Buffer specular;
     Vec4Buffer moments;          // out: first and second moment of luminance, diffuse then specular
+    Vec4Buffer punctual;         // out, with kFlagPunctualApart: rgb, a = second moment of luminance
     FloatBuffer history_length;  // out: frames
     HistoryTapsBuffer taps;      // out, with kFlagKeepTaps
     uint width;
@@ -150,6 +154,8 @@ const uint kTemporalPreviousMoments = 4;
 const uint kTemporalPreviousLength = 5;    // R32F
 const uint kTemporalDiffuse = 6;           // noisy input
 const uint kTemporalSpecular = 7;
+const uint kTemporalPunctual = 8;          // noisy input
+const uint kTemporalPreviousPunctual = 9;
 
 // svgf_variance.comp, limit_history.comp and svgf_atrous.comp. Read set 1: kFilter….
 struct FilterParams {
@@ -175,14 +181,34 @@ const uint kFilterSpecular = 2;
 const uint kFilterMoments = 3;
 const uint kFilterLength = 4;
 
+// filter_punctual.comp: one level over light that comes straight from punctual lights. Reads set 1: kFilter…, of which
+// kFilterDiffuse is that light: rgb, a = second moment of luminance in the first level, variance later.
+struct FilterPunctualParams {
+    CameraBuffer cameras;
+    Vec4Buffer punctual; // out: rgb, a = variance
+    uint width;
+    uint height;
+    uint page_count;
+    uint source_count;
+    uint step;           // pixels between taps
+    float sigma_luminance;
+    float sigma_depth;
+    uint normal_squarings;
+    int radius;
+    uint has_moments;    // the first level
+    float alpha;         // least weight of a frame in this light
+};
+
 // pack_source.comp: illumination into wire precision.
 struct PackParams {
     Vec4Buffer diffuse_in;
     Vec4Buffer specular_in;
+    Vec4Buffer punctual_in; // added to diffuse, with is_punctual_apart
     UintBuffer diffuse;  // out: R11G11B10F
     UintBuffer specular;
     uint first_pixel;    // of all pages
     uint pixel_count;
+    uint is_punctual_apart;
 };
 
 // interleave_source.comp: wire planes into the texels that reproject.comp reads.
