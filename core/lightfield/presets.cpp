@@ -47,8 +47,8 @@ bool change(Preset& preset, const std::string& word) {
         settings.sampler = Sampler::kZSobol;
     } else if (word == "no-candidates") {
         settings.light_sampling = LightSampling::plain();
-    } else if (word == "each-light-kind") {
-        settings.light_sampling.each_kind = true;
+    } else if (word == "one-light-sample") {
+        settings.light_sampling.each_kind = false;
     } else if (word == "no-reflections") {
         settings.reflections = false;
     } else if (word == "no-guard-band") {
@@ -78,8 +78,7 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
 
 std::string preset_names() {
     return "reprojected, svgf, bmfr, paper, paper-red, ours, red; changed by /sobol, /z-sobol, /no-candidates, "
-           "/each-light-kind, "
-           "/no-reflections, /no-guard-band, /traced-holes";
+           "/one-light-sample, /no-reflections, /no-guard-band, /traced-holes";
 }
 
 } // namespace fieldcast

@@ -49,6 +49,7 @@ void Accumulation::resize(std::uint32_t texel_count, bool is_punctual_apart) {
     if (texel_count == texel_count_ && is_punctual_apart == static_cast<bool>(noisy_punctual_.buffer)) {
         return;
     }
+    ++resize_count_;
     texel_count_ = texel_count;
     for (SourceHistory& history : history_) {
         history.resize(device_, texel_count);

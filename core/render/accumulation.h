@@ -68,7 +68,8 @@ public:
 
     /// `texel_count`: pixels of all pages. `is_punctual_apart`: light straight from punctual lights has a history of its
     /// own, short and unlimited, so that the noise of other light does not blur its shadows.
-    void resize(std::uint32_t texel_count, bool is_punctual_apart);
+    void resize(std::uint32_t texel_count, bool is_punctual_apart = false);
+    std::uint64_t resize_count() const { return resize_count_; } ///< changes whenever its buffers do
     std::uint32_t texel_count() const { return texel_count_; }
 
     /// The new frame's share of the average is at least `share` · least_weight. `is_sharp`: the history is interpolated
@@ -101,6 +102,7 @@ private:
     const scene::GpuScene& scene_;
     gpu::BindingLayout layout_;
     gpu::Kernel kernel_;
+    std::uint64_t resize_count_ = 0;
     std::uint32_t texel_count_ = 0;
     std::uint32_t current_ = 0;
     std::array<SourceHistory, 2> history_;

@@ -36,9 +36,10 @@ void Bmfr::resize(std::uint32_t block_count) {
     if (fits_.size_bytes() < bytes) {
         fits_ = gpu::Buffer(device_, bytes);
     }
-    if (texel_count_ == accumulation_.texel_count()) {
+    if (resize_count_ == accumulation_.resize_count()) {
         return;
     }
+    resize_count_ = accumulation_.resize_count();
     texel_count_ = accumulation_.texel_count();
     has_filtered_ = false;
     for (Light& light : filtered_) {

@@ -38,6 +38,7 @@ private:
     gpu::BindingLayout layout_;
     gpu::Kernel fit_;
     gpu::Kernel evaluate_;
+    std::uint64_t resize_count_ = 0;
     std::uint32_t texel_count_ = 0;
     gpu::Buffer fits_;
     std::array<Light, 2> filtered_;       ///< by the accumulation's current history

@@ -8,7 +8,7 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kLevels = 3;
+constexpr std::uint32_t kLevels = 2;
 
 } // namespace
 
@@ -17,9 +17,10 @@ PunctualFilter::PunctualFilter(const gpu::Device& device, const Accumulation& ac
       kernel_(make_plain_kernel(device, KernelId::kFilterPunctual, sizeof(shared::FilterPunctualParams), {&layout_})) {}
 
 void PunctualFilter::resize() {
-    if (texel_count_ == accumulation_.texel_count()) {
+    if (resize_count_ == accumulation_.resize_count()) {
         return;
     }
+    resize_count_ = accumulation_.resize_count();
     texel_count_ = accumulation_.texel_count();
     for (LightBuffer& light : scratch_) {
         light.resize(device_, texel_count_);
@@ -50,8 +51,8 @@ const gpu::Buffer& PunctualFilter::record(gpu::Recorder& recorder, const FilterF
     params.height = frame.height;
     params.page_count = frame.page_count;
     params.source_count = frame.source_count;
-    params.sigma_luminance = 2.0F; // as SVGF+
-    params.sigma_depth = 1.0F;
+    params.sigma_luminance = 1.0F; // little noise: less than SVGF+
+    params.sigma_depth = 1.0F;     // as SVGF+
     params.normal_squarings = 5;
     params.alpha = frame.least_weight;
     recorder.stage("denoise_punctual");

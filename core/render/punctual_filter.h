@@ -5,7 +5,7 @@
 
 namespace fieldcast::render {
 
-/// Filters diffuse light that comes straight from punctual lights, which is accumulated apart: three levels of SVGF+'s
+/// Filters diffuse light that comes straight from punctual lights, which is accumulated apart: two levels of SVGF+'s
 /// edge-avoiding filter, led by the variance of this light alone. Shadows of a sun stay sharp however noisy the sky is.
 class PunctualFilter {
 public:
@@ -22,6 +22,7 @@ private:
     const Accumulation& accumulation_;
     gpu::BindingLayout layout_;
     gpu::Kernel kernel_;
+    std::uint64_t resize_count_ = 0;
     std::uint32_t texel_count_ = 0;
     std::array<LightBuffer, 2> scratch_;                 ///< ping-pong
     std::array<std::array<gpu::BindingSet, 3>, 2> sets_; ///< by current history: reads that, scratch 0, scratch 1

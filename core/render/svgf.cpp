@@ -23,7 +23,7 @@ struct Tuning {
 };
 
 constexpr Tuning kSvgf{};
-constexpr Tuning kSvgfPlus{.sigma_luminance = 2.0F,
+constexpr Tuning kSvgfPlus{.sigma_luminance = 3.0F,
                            .sigma_depth = 1.0F,
                            .normal_squarings = 5,
                            .outer_radius = 1,
@@ -50,9 +50,10 @@ Accumulation::Options Svgf::accumulation_options(Denoiser denoiser) {
 }
 
 void Svgf::resize() {
-    if (texel_count_ == accumulation_.texel_count()) {
+    if (resize_count_ == accumulation_.resize_count()) {
         return;
     }
+    resize_count_ = accumulation_.resize_count();
     texel_count_ = accumulation_.texel_count();
     for (Light& light : scratch_) {
         light.resize(device_, texel_count_);

@@ -30,6 +30,7 @@ private:
     gpu::Kernel variance_;
     gpu::Kernel limit_history_;
     gpu::Kernel atrous_;
+    std::uint64_t resize_count_ = 0;
     std::uint32_t texel_count_ = 0;
     std::array<Light, 2> scratch_;                       ///< ping-pong
     std::array<std::array<gpu::BindingSet, 3>, 2> sets_; ///< by current history: reads that, scratch 0, scratch 1

@@ -205,6 +205,7 @@ void apply_preset(FlagText& text, Config& config) {
     text.denoiser = word_of(preset->settings.denoiser, kDenoisers);
     text.sampler = word_of(preset->settings.sampler, kSamplers);
     text.reflections = word_of(preset->settings.reflections, kSwitch);
+    text.each_light_kind = word_of(preset->settings.light_sampling.each_kind, kSwitch);
     text.route = word_of(preset->settings.route, kRoutes);
     text.accumulate_views = word_of(preset->settings.accumulate_views, kSwitch);
     text.holes = preset->settings.holes == HoleFilling::path_traced() ? "none" : "all";
@@ -236,6 +237,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         Word{.word = "debug", .value = log::Level::kDebug}, Word{.word = "info", .value = log::Level::kInfo},
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
     read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
+    read_word("--each-light-kind", text.each_light_kind, kSwitch, config.settings.light_sampling.each_kind, problems);
     read_word("--reflections", text.reflections, kSwitch, config.settings.reflections, problems);
     read_word("--route", text.route, kRoutes, config.settings.route, problems);
     read_word("--accumulate-views", text.accumulate_views, kSwitch, config.settings.accumulate_views, problems);

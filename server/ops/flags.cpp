@@ -110,9 +110,11 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
                    "Candidates of which the best is taken as light sample")
         ->group("Rendering")
         ->capture_default_str();
-    app.add_flag("--each-light-kind", settings.light_sampling.each_kind,
-                 "A shadow ray for each kind of light at the first vertex instead of one for all")
-        ->group("Rendering");
+    app.add_option("--each-light-kind", text.each_light_kind,
+                   "on: sky, emissive surfaces and lamps have a shadow ray each where a pixel looks, and shadows of "
+                   "lamps and sun are filtered apart; off: one for all")
+        ->group("Rendering")
+        ->capture_default_str();
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
     app.add_flag("--accumulate", settings.accumulate,
                  "While nothing moves, average frames without bias instead of denoising them")

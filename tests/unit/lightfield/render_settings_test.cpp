@@ -49,6 +49,8 @@ TEST(Presets, AreChangedByWords) {
     EXPECT_FALSE(find_preset("ours/no-guard-band", 6, 6)->has_guard_band);
     EXPECT_EQ(find_preset("ours/traced-holes", 6, 6)->settings.holes, HoleFilling::path_traced());
     EXPECT_EQ(find_preset("ours/no-candidates", 6, 6)->settings.light_sampling, LightSampling::plain());
+    EXPECT_TRUE(find_preset("ours", 6, 6)->settings.light_sampling.each_kind);
+    EXPECT_EQ(find_preset("ours/one-light-sample", 6, 6)->settings.light_sampling, (LightSampling{4, false}));
     EXPECT_EQ(find_preset("svgf/z-sobol", 6, 6)->settings.sampler, Sampler::kZSobol);
     EXPECT_FALSE(find_preset("ours/better", 6, 6));
 }
