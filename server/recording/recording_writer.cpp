@@ -38,8 +38,7 @@ RecordingWriter::~RecordingWriter() {
 }
 
 bool RecordingWriter::can_hold(const feed::EncodedFrame& frame) const {
-    const bool is_first_key = frame.key_frame_id == frame.header.frame_id;
-    return (last_key_id_ != 0 || is_first_key) && std::ranges::all_of(recorded_, [&](const feed::Wish& wish) {
+    return std::ranges::all_of(recorded_, [&](const feed::Wish& wish) {
         return feed::covers(frame, wish) && feed::stands_alone(frame, wish);
     });
 }
@@ -52,7 +51,7 @@ bool RecordingWriter::add(const feed::EncodedFrame& frame, std::chrono::nanoseco
     if (mark.is_key()) {
         last_key_id_ = mark.frame_id;
     } else if (mark.key_frame_id != last_key_id_) {
-        mark.key_frame_id = 0; // that one is not in the file: what stands alone has to do
+        mark.key_frame_id = 0; // that one is not in the file: strips that stand alone have to do
     }
     begin_ = frames_.empty() ? at : begin_;
     mark.at_ns = frames_.empty() ? 0 : std::max((at - begin_).count(), frames_.back().mark.at_ns);

@@ -19,8 +19,8 @@ public:
     RecordingWriter(const std::filesystem::path& file, const feed::ChannelInfo& info);
     ~RecordingWriter(); ///< finishes; problems are logged
 
-    /// Writes `frame`, shown at `at` (any origin), unless it lacks something that is recorded or comes before the first
-    /// key frame: false. Throws std::runtime_error if the disk refuses.
+    /// Writes `frame`, shown at `at` (any origin), unless it lacks something that is recorded: false. If its key frame is
+    /// not in the file, its strips refer to nothing. Throws std::runtime_error if the disk refuses.
     bool add(const feed::EncodedFrame& frame, std::chrono::nanoseconds at);
 
     /// Writes the index; nothing can be added any more. Throws std::runtime_error if the disk refuses.

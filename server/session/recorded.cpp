@@ -19,15 +19,19 @@ const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSem
     return found == wanted.codecs().end() || found->codecs().empty() ? nullptr : &*found;
 }
 
-bool accepts(const v1::Configure& wanted, const wire::PlaneChoice& recorded) {
-    const v1::Codec codec = wire::to_proto(recorded.encoding.codec);
+/// How early the client names that codec; nothing: it does not want it.
+std::optional<std::size_t> rank_of(const wire::PlaneChoice& recorded, const v1::Configure& wanted) {
+    const auto place_in = [&](const auto& codecs) -> std::optional<std::size_t> {
+        const auto found = std::ranges::find(codecs, wire::to_proto(recorded.encoding.codec));
+        return found == codecs.end() ? std::nullopt : std::optional<std::size_t>(found - codecs.begin());
+    };
     const v1::CodecPreference* const preference = find_preference(wanted, recorded.semantic);
     if (preference == nullptr) {
-        return std::ranges::find(kUnasked, codec) != kUnasked.end();
+        return place_in(kUnasked);
     }
     const bool has_quality = preference->quality() == 0 || !codec::is_lossy(recorded.encoding.codec) ||
                              preference->quality() == recorded.encoding.quality;
-    return has_quality && std::ranges::find(preference->codecs(), codec) != preference->codecs().end();
+    return has_quality ? place_in(preference->codecs()) : std::nullopt;
 }
 
 void ask_for(const wire::PlaneChoice& recorded, v1::Configure& wanted) {
@@ -58,9 +62,6 @@ bool fits(const v1::Configure& wanted, const feed::ViewsWish& recorded, const fe
     if (fovy != 0.0F && !(std::abs(fovy - format.fovy_rad) <= kRounding * format.fovy_rad)) {
         return false;
     }
-    if (!accepts(wanted, colour_of(recorded))) {
-        return false;
-    }
     if (!wanted.has_grid()) {
         return true;
     }
@@ -70,21 +71,30 @@ bool fits(const v1::Configure& wanted, const feed::ViewsWish& recorded, const fe
 }
 
 bool narrow_views(v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    const feed::ViewsWish* best = nullptr;
+    std::optional<std::size_t> best_rank;
     for (const feed::Wish& wish : channel.recorded) {
         const auto* const recorded = std::get_if<feed::ViewsWish>(&wish);
         if (recorded == nullptr || !fits(wanted, *recorded, channel)) {
             continue;
         }
-        if (!wanted.has_grid()) {
-            wire::to_proto(recorded->grid, *wanted.mutable_grid());
+        const auto rank = rank_of(colour_of(*recorded), wanted);
+        if (rank && (!best_rank || *rank < *best_rank)) {
+            best = recorded;
+            best_rank = rank;
         }
-        wanted.set_view_width_px(recorded->format.width_px);
-        wanted.set_view_height_px(recorded->format.height_px);
-        wanted.set_fovy_rad(recorded->format.fovy_rad);
-        ask_for(colour_of(*recorded), wanted);
-        return true;
     }
-    return false;
+    if (best == nullptr) {
+        return false;
+    }
+    if (!wanted.has_grid()) {
+        wire::to_proto(best->grid, *wanted.mutable_grid());
+    }
+    wanted.set_view_width_px(best->format.width_px);
+    wanted.set_view_height_px(best->format.height_px);
+    wanted.set_fovy_rad(best->format.fovy_rad);
+    ask_for(colour_of(*best), wanted);
+    return true;
 }
 
 bool is_asked(const v1::Configure& wanted, PlaneSemantic semantic) {
@@ -96,7 +106,7 @@ bool narrow_planes(v1::Configure& wanted, const feed::ChannelInfo& channel) {
     for (const feed::Wish& wish : channel.recorded) {
         const auto* const recorded = std::get_if<feed::PlanesWish>(&wish);
         if (recorded == nullptr || !std::ranges::all_of(recorded->choices, [&](const wire::PlaneChoice& choice) {
-                return !is_asked(wanted, choice.semantic) || accepts(wanted, choice);
+                return !is_asked(wanted, choice.semantic) || rank_of(choice, wanted).has_value();
             })) {
             continue;
         }

@@ -10,6 +10,10 @@ fieldcast_test(server_session_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
+fieldcast_test(server_recording_test LABELS quick
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_recording_test.cpp
+    DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
