@@ -46,14 +46,10 @@ bool wait_until(Clock::time_point time, const std::stop_token& stop) {
     return !stop.stop_requested();
 }
 
-/// Moves the recorder's times so that encoding ends now; durations stay.
-void move_to_now(wire::ServerTimes& times) {
+/// Nothing is rendered and encoded any more: for clients that measure, the frame begins now.
+wire::ServerTimes times_now() {
     const std::int64_t now_ns = nanoseconds(Clock::now().time_since_epoch()).count();
-    for (std::int64_t* const time : {&times.pose_sampled_ns, &times.render_begin_ns, &times.render_end_ns}) {
-        const bool is_likely = *time > 0 && *time <= times.encode_end_ns; // a file may say anything
-        *time = is_likely ? now_ns - (times.encode_end_ns - *time) : 0;
-    }
-    times.encode_end_ns = now_ns;
+    return {.pose_sampled_ns = now_ns, .render_begin_ns = now_ns, .render_end_ns = now_ns, .encode_end_ns = now_ns};
 }
 
 } // namespace
@@ -95,7 +91,7 @@ void Replay::publish_frames(const std::stop_token& stop) {
             return;
         }
         if (frame != nullptr) {
-            move_to_now(frame->times);
+            frame->times = times_now();
             feed_->publish(frame);
             frames_.add();
         }

@@ -233,6 +233,7 @@ TEST_F(RecordingTest, ReplaysInALoop) {
         EXPECT_EQ(frame.views.front().key_frame_id, frame.key_frame_id);
         EXPECT_EQ(frame.source->header.frame_id, i + 1);
         EXPECT_LE(frame.times.encode_end_ns, now_ns);
+        EXPECT_EQ(frame.times.pose_sampled_ns, frame.times.encode_end_ns) << "latencies are those of the replay";
         EXPECT_GE(frame.times.encode_end_ns, now_ns - std::chrono::nanoseconds(kPatience).count());
         const auto original = frames_[i % 6];
         for (const auto& [position, view] : frame.views.front().views) {
