@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "core/base/log.h"
-#include "core/scene/bundle.h"
-#include "server/channel/channel.h"
-#include "server/channel/offline.h"
+#include "server/channel/channel_list.h"
+#include "server/channel/offline_recording.h"
 #include "server/metrics/http_endpoint.h"
 #include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
@@ -28,34 +27,6 @@ constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
-
-using Channels = std::vector<std::unique_ptr<channel::Channel>>;
-
-Channels start_channels(const gpu::Device& device, const ops::Config& config, metrics::Registry& registry) {
-    Channels channels;
-    for (const ops::ChannelChoice& choice : config.channels) {
-        const auto begin = Clock::now();
-        channels.push_back(std::make_unique<channel::Channel>(device, config, choice, registry));
-        const feed::ChannelInfo& info = channels.back()->feed()->info();
-        const std::chrono::duration<double> duration = Clock::now() - begin;
-        log::info("channel ready", {{"channel", info.name},
-                                    {"scene", scene::to_hex(info.scene_hash)},
-                                    {"camera", info.camera},
-                                    {"width_px", info.source_width_px},
-                                    {"height_px", info.source_height_px},
-                                    {"spacing_m", info.largest_grid.geometry.spacing_m.x},
-                                    {"seconds", duration.count()}});
-    }
-    return channels;
-}
-
-std::vector<std::shared_ptr<feed::Feed>> feeds_of(const Channels& channels) {
-    std::vector<std::shared_ptr<feed::Feed>> feeds;
-    for (const auto& channel : channels) {
-        feeds.push_back(channel->feed());
-    }
-    return feeds;
-}
 
 /// What the process says about itself, whatever it serves.
 void collect_process(metrics::Page& page) {
@@ -112,11 +83,9 @@ void drain(const ops::StopSignals& signals, service::GrpcServer& server, const s
 int run(const ops::Config& config, const ops::StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
-    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
-    log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
     const auto registry = std::make_shared<metrics::Registry>();
-    const Channels channels = start_channels(device, config, *registry);
-    const auto feeds = feeds_of(channels);
+    const channel::ChannelList channels(config, *registry);
+    const auto& feeds = channels.feeds();
     service::GrpcServer server(config.listen, feeds, config.limits, config.security, registry);
     const MetricsServer metrics_server(config, server.gate(), *registry);
     std::optional<ops::PortFile> port_file;
@@ -126,7 +95,7 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     log::info("SERVING", {{"listen", to_text({.host = config.listen.host, .port = server.port()})},
                           {"tls", config.security.certificates.has_value()},
                           {"tokens", config.security.tokens.has_value()},
-                          {"channels", channels.size()}});
+                          {"channels", feeds.size()}});
     const bool is_signal = serve(signals, feeds);
     drain(signals, server, is_signal ? "the server is shutting down" : "a channel failed");
     return is_signal ? kOk : kMachineFailed;
@@ -164,6 +133,26 @@ int render(const ops::Config& config, const ops::OfflineJob& job, const ops::Sto
     return kOk;
 }
 
+/// A recording instead of a service.
+int record(const ops::Config& config, const ops::RecordJob& job, const ops::StopSignals& signals) {
+    log::set_format(config.log_format);
+    log::set_level(config.log_level);
+    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
+    const auto progress = [&](const std::string& done) {
+        std::cerr << '\r' << done << "   " << std::flush;
+        return signals.wait(std::chrono::milliseconds(0));
+    };
+    const bool is_done = channel::record_offline(device, config, job, progress);
+    std::cerr << '\n';
+    if (!is_done) {
+        std::cerr << "interrupted: the frames so far are recorded\n";
+        return kInterrupted;
+    }
+    std::cout << job.out.string() << '\n';
+    return kOk;
+}
+
 int start(int argc, char** argv) {
     const ops::StopSignals signals; // before any thread exists
     const ops::Invocation invocation = ops::read_flags(argc, argv);
@@ -185,6 +174,8 @@ int start(int argc, char** argv) {
         return probe(invocation.health);
     case ops::Invocation::Kind::kRender:
         return render(invocation.config, invocation.job, signals);
+    case ops::Invocation::Kind::kRecord:
+        return record(invocation.config, invocation.record_job, signals);
     case ops::Invocation::Kind::kServe:
         break;
     }

@@ -101,6 +101,7 @@ void Connection::State::prepare(grpc::ClientContext& context) const {
 NetError to_error(const std::string& what, const grpc::Status& status) {
     switch (status.error_code()) {
     case grpc::StatusCode::UNAVAILABLE:
+        return {what + ": " + with_advice(status.error_message()), true, false, Obstacle::kUnreachable};
     case grpc::StatusCode::DEADLINE_EXCEEDED:
     case grpc::StatusCode::RESOURCE_EXHAUSTED:
     case grpc::StatusCode::ABORTED:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/net/access.h"
+#include "client/net/backoff.h"
 
 #include <memory>
 #include <stdexcept>
@@ -12,16 +13,21 @@ namespace fieldcast::client::net {
 /// A call or a stream failed. Transient failures (no server, overload, a cut connection) are worth another attempt.
 class NetError : public std::runtime_error {
 public:
-    NetError(const std::string& message, bool is_transient, bool is_denied = false)
-        : std::runtime_error(message), is_transient_(is_transient), is_denied_(is_denied) {}
+    NetError(const std::string& message, bool is_transient, bool is_denied = false,
+             Obstacle obstacle = Obstacle::kRefused)
+        : std::runtime_error(message), is_transient_(is_transient), is_denied_(is_denied), obstacle_(obstacle) {}
     bool is_transient() const { return is_transient_; }
 
     /// The server asks for a token, or for another one.
     bool is_denied() const { return is_denied_; }
 
+    /// For `Backoff`.
+    Obstacle obstacle() const { return obstacle_; }
+
 private:
     bool is_transient_;
     bool is_denied_;
+    Obstacle obstacle_;
 };
 
 /// An HTTP/2 connection to one server, made by the first call. Thread-safe.

@@ -15,14 +15,14 @@ void Attempts::succeeded() {
     backoff_.reset();
 }
 
-bool Attempts::wait_for_next(const std::stop_token& stop) {
+bool Attempts::wait_for_next(const std::stop_token& stop, net::Obstacle obstacle) {
     if (!reconnects_ || std::chrono::steady_clock::now() >= gives_up_) {
         return false;
     }
     std::mutex mutex;
     std::condition_variable_any stopped;
     std::unique_lock lock(mutex);
-    stopped.wait_for(lock, stop, backoff_.next(), [] { return false; });
+    stopped.wait_for(lock, stop, backoff_.next(obstacle), [] { return false; });
     return !stop.stop_requested();
 }
 

@@ -18,7 +18,7 @@ public:
     void succeeded();
 
     /// Waits before the next attempt. False if there is to be none, or on a stop request.
-    bool wait_for_next(const std::stop_token& stop);
+    bool wait_for_next(const std::stop_token& stop, net::Obstacle obstacle);
 
 private:
     bool reconnects_;

@@ -54,7 +54,7 @@ void Receiver::run(const std::stop_token& stop) {
                 break;
             }
             log::info("session ended", {{"reason", end.message}});
-            if (!end.is_transient || !attempts.wait_for_next(stop)) {
+            if (!end.is_transient || !attempts.wait_for_next(stop, end.obstacle)) {
                 *failure_.lock() = Failure{end.message, end.was_refused};
                 break;
             }
@@ -107,7 +107,8 @@ void Receiver::handle(net::Event event, SessionState& state) {
                           [&](net::Ended& ended) {
                               const std::string message = ended.error.what();
                               state.end = SessionEnd{message.empty() ? "the server finished" : message,
-                                                     ended.error.is_transient(), ended.error.is_denied()};
+                                                     ended.error.is_transient(), ended.error.is_denied(),
+                                                     ended.error.obstacle()};
                           }},
                event);
 }

@@ -48,6 +48,7 @@ private:
         std::string message;
         bool is_transient = true;
         bool was_refused = false;
+        net::Obstacle obstacle = net::Obstacle::kRefused;
     };
     struct SessionState; ///< of the session in progress, for the thread
 

@@ -29,7 +29,7 @@ template <class Attempt> auto persistently(const ServerOptions& server, const st
         try {
             return attempt(net::Connection(server.address, server.access));
         } catch (const net::NetError& error) {
-            if (!error.is_transient() || !attempts.wait_for_next(stop)) {
+            if (!error.is_transient() || !attempts.wait_for_next(stop, error.obstacle())) {
                 throw;
             }
             log::debug("trying again", {{"reason", error.what()}});

@@ -9,6 +9,9 @@ namespace fieldcast::channel {
 /// Asked between frames, and between the samples of references, with a text for people; true: stop.
 using OfflineProgress = std::function<bool(const std::string& done)>;
 
+/// When frame `frame` of an offline run shows the scene.
+FrameMoment offline_moment(const ops::Config& config, std::uint32_t frame);
+
 /// Renders frames of a channel as its clients would get them, all views of the largest grid, and writes light fields to
 /// files: quilt, views, source EXR; with references, an EXR of linear radiance per view as well. False: stopped; what was
 /// written is complete. Throws UserError if the scene is not usable, std::system_error if a file cannot be written.

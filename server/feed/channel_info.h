@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/lightfield/view_grid.h"
+#include "server/feed/wish.h"
 
 #include <array>
 #include <cstddef>
@@ -30,6 +31,7 @@ struct ChannelInfo {
     std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
     std::uint8_t lossy_quality = 75;                      ///< of planes in a lossy codec, if the client does not say
     std::uint64_t max_view_pixels = 0;                    ///< of all views of a frame, over all clients
+    std::vector<Wish> recorded{}; ///< not empty: the channel is a recording of these and can show nothing else
 };
 
 } // namespace fieldcast::feed

@@ -38,6 +38,24 @@ void add(Demand& demand, KeyNeed need) {
     demand.needs_key = demand.needs_key || need == KeyNeed::kKey;
 }
 
+bool covers(const std::vector<Wish>& wishes, const Wish& wish) {
+    Demand together;
+    for (const Wish& one : wishes) {
+        add(together, one);
+    }
+    if (const auto* planes = std::get_if<PlanesWish>(&wish)) {
+        return std::ranges::all_of(planes->choices, [&](const wire::PlaneChoice& choice) {
+            return std::ranges::find(together.planes, choice) != together.planes.end();
+        });
+    }
+    const auto& views = std::get<ViewsWish>(wish);
+    const auto same = std::ranges::find(together.views, views.format, &ViewDemand::format);
+    return same != together.views.end() &&
+           std::ranges::all_of(lattice_positions(views.grid), [&](LatticePosition position) {
+               return std::ranges::binary_search(same->positions, position);
+           });
+}
+
 std::uint64_t Demand::view_pixels() const {
     std::uint64_t pixels = 0;
     for (const ViewDemand& set : views) {

@@ -4,6 +4,7 @@
 #include "core/wire/encode.h"
 
 #include <cstdint>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -54,5 +55,14 @@ struct Demand {
 /// Widens `demand` so that it covers `wish`.
 void add(Demand& demand, const Wish& wish);
 void add(Demand& demand, KeyNeed need);
+
+/// Whether a client that gets everything in `wishes` has everything in `wish`.
+bool covers(const std::vector<Wish>& wishes, const Wish& wish);
+
+/// For people: "views 3x3 of 160x90 zstd", "planes diffuse jpeg 75, specular jpeg 75".
+std::string to_text(const Wish& wish);
+
+/// The word of flags and texts: "raw", "zstd", "jpeg 75".
+std::string to_text(const codec::Encoding& encoding);
 
 } // namespace fieldcast::feed

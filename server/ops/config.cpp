@@ -6,6 +6,7 @@
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 #include "server/ops/limit_flags.h"
+#include "server/ops/recording_flags.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,10 +36,12 @@ void expect(Problems& problems, bool is_right, const char* flag, const T& value,
 }
 
 void check_channels(const Config& config, Problems& problems) {
-    if (config.channels.empty()) {
-        problems.emplace_back("--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE");
+    if (config.channels.empty() && config.replays.empty()) {
+        problems.emplace_back("--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE, or a "
+                              "recording with --replay FILE");
     }
-    expect(problems, config.channels.size() <= kMaxChannels, "--channel", config.channels.size(),
+    expect(problems, config.channels.size() + config.replays.size() <= kMaxChannels, "--channel",
+           config.channels.size() + config.replays.size(),
            "at most 64 channels");
     std::set<std::string> names;
     for (const ChannelChoice& channel : config.channels) {
@@ -151,6 +154,8 @@ std::vector<std::string> problems_of(const Config& config) {
     check_rendering(config, problems);
     check_serving(config, problems);
     check_access(config, problems);
+    const Problems of_recordings = recording_problems(config);
+    problems.insert(problems.end(), of_recordings.begin(), of_recordings.end());
     return problems;
 }
 

@@ -5,6 +5,8 @@
 #include "core/lightfield/camera.h"
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
+#include "server/recording/form.h"
+#include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server/session/limits.h"
 
@@ -22,6 +24,12 @@ struct ChannelChoice {
     std::filesystem::path scene;
 };
 
+/// A channel to record while it is served.
+struct RecordChoice {
+    std::string channel; ///< empty: the only one
+    std::filesystem::path file;
+};
+
 enum class GuardBandMode : std::uint8_t { kAuto, kFixed };
 
 /// How a channel's scene time goes on.
@@ -33,6 +41,7 @@ enum class ClockMode : std::uint8_t {
 /// Everything the server can be told, with defaults. Validated once, then never changed.
 struct Config {
     std::vector<ChannelChoice> channels;
+    std::vector<recording::ReplaySetup> replays; ///< channels that show a recording
 
     // Scenes, the same for all channels.
     std::optional<std::filesystem::path> environment;
@@ -58,6 +67,12 @@ struct Config {
     std::uint32_t seed = 1;
 
     std::uint32_t lossy_quality = 75; ///< of planes in a lossy codec, 1 to 100, if the client does not say
+
+    // Recordings.
+    std::optional<float> replay_fps; ///< of all replays; unset: as recorded
+    std::vector<RecordChoice> records;
+    std::vector<recording::Form> record_forms;
+    std::uint64_t record_frames = 0; ///< of each recording; 0: until the server stops
 
     // Device.
     std::string traversal = "auto";

@@ -222,6 +222,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_holes(text, config, problems);
     read_listen(text, config, problems);
     read_security(text, config, problems);
+    read_recordings(text.recording, config, problems);
     if (!text.environment.empty()) {
         config.environment = text.environment;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/ops/config.h"
+#include "server/ops/recording_flags.h"
 
 #include <string>
 #include <vector>
@@ -39,6 +40,7 @@ struct FlagText {
     std::string tokens;
     std::string metrics_listen;
     std::string metrics_port_file;
+    RecordingText recording;
     std::string log_level = "info";
     std::string log_format = "text";
 };

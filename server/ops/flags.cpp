@@ -8,6 +8,7 @@
 #include "server/ops/health_flags.h"
 #include "server/ops/limit_flags.h"
 #include "server/ops/new_token.h"
+#include "server/ops/recording_flags.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,6 +24,8 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --scene a.gltf --clock frames --frames 30 --seed 7        # the same 30 frames again and again
   fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
   fieldcast-server render --help                                                # what else it can write
+  fieldcast-server record --scene a.gltf --size 640x360 --count 300 --out a.fcrec   # a channel in a file
+  fieldcast-server --replay a.fcrec                                             # and back, without a device
   fieldcast-server --make-token alice view
   fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
   fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
@@ -193,6 +196,14 @@ void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>&
             ->capture_default_str());
 }
 
+void add_record_flags(CLI::App& app, RecordJob& job) {
+    const auto add = [&](CLI::Option* option) { option->group("record")->configurable(false); };
+    add(app.add_option("--out", job.out, "The recording")->capture_default_str());
+    add(app.add_option("--count", job.frame_count, "Frames to record, 1/fps apart, from a cold start")
+            ->check(CLI::Range(1U, 1U << 24U))
+            ->capture_default_str());
+}
+
 image::LightFieldProducts read_products(const std::vector<std::string>& words) {
     const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
     return {.quilt = has("quilt"),
@@ -200,6 +211,13 @@ image::LightFieldProducts read_products(const std::vector<std::string>& words) {
             .contact_sheet = has("contact-sheet"),
             .look_around = has("look-around"),
             .source_exr = has("exr")};
+}
+
+/// The word in front of the flags.
+enum class Task : std::uint8_t { kServe, kRender, kRecord };
+
+Task task_of(std::string_view word) {
+    return word == "render" ? Task::kRender : word == "record" ? Task::kRecord : Task::kServe;
 }
 
 /// Everything that can be typed, and where it goes.
@@ -212,11 +230,12 @@ struct CommandLine {
     bool only_print = false;
     std::vector<std::string> new_token;
     HealthText health;
-    bool renders = false; ///< "render" came first
+    Task task = Task::kServe;
     OfflineJob job;
+    RecordJob record_job;
     std::vector<std::string> products{"quilt", "views", "exr"};
 
-    explicit CommandLine(bool is_offline = false, const std::string& preset = "ours") : renders(is_offline) {
+    explicit CommandLine(Task asked = Task::kServe, const std::string& preset = "ours") : task(asked) {
         text.preset = preset;
         apply_preset(text, config);
         app.footer(kExamples);
@@ -234,11 +253,14 @@ struct CommandLine {
         add_image_flags(app, text, config);
         add_render_flags(app, text, config);
         add_serving_flags(app, text, config);
+        add_recording_flags(app, text.recording, config);
         add_limit_flags(app, config);
         add_security_flags(app, text);
         add_health_flags(app, health);
-        if (renders) {
+        if (task == Task::kRender) {
             add_offline_flags(app, job, products);
+        } else if (task == Task::kRecord) {
+            add_record_flags(app, record_job);
         }
     }
     CommandLine(const CommandLine&) = delete;
@@ -288,12 +310,18 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
     }
     std::vector<std::string> merged(file.arguments);
     merged.insert(merged.end(), arguments.begin(), arguments.end());
-    CommandLine first(typed.renders);
+    CommandLine first(typed.task);
     parse(first, merged); // for the preset; problems are told below
-    CommandLine all(typed.renders, first.text.preset);
+    CommandLine all(typed.task, first.text.preset);
     Invocation invocation;
     std::vector<std::string> problems = parse(all, merged);
     read_text(all.text, all.config, problems);
+    if (all.task == Task::kRecord && (all.config.channels.size() != 1 || !all.config.replays.empty())) {
+        problems.emplace_back("--scene: record takes exactly one scene, and no recordings");
+    }
+    if (all.task == Task::kRender && !all.config.replays.empty()) {
+        problems.emplace_back("--replay: render takes scenes, no recordings");
+    }
     const std::vector<std::string> further = problems_of(all.config);
     problems.insert(problems.end(), further.begin(), further.end());
     invocation.problems = file.problems;
@@ -305,7 +333,10 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
         invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
     } else if (all.only_check) {
         invocation.kind = Invocation::Kind::kCheck;
-    } else if (all.renders) {
+    } else if (all.task == Task::kRecord) {
+        invocation.kind = Invocation::Kind::kRecord;
+        invocation.record_job = std::move(all.record_job);
+    } else if (all.task == Task::kRender) {
         invocation.kind = Invocation::Kind::kRender;
         invocation.job = std::move(all.job);
         invocation.job.products = read_products(all.products);
@@ -343,9 +374,9 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
 } // namespace
 
 Invocation read_flags(int argc, const char* const* argv) {
-    const bool renders = argc > 1 && std::string_view(argv[1]) == "render";
-    CommandLine typed(renders);
-    return read({argv + (renders ? 2 : 1), argv + argc}, typed);
+    const Task task = argc > 1 ? task_of(argv[1]) : Task::kServe;
+    CommandLine typed(task);
+    return read({argv + (task == Task::kServe ? 1 : 2), argv + argc}, typed);
 }
 
 } // namespace fieldcast::ops

@@ -3,6 +3,7 @@
 
 #include "server/ops/config.h"
 #include "server/ops/offline_job.h"
+#include "server/ops/record_job.h"
 #include "server/service/health_probe.h"
 
 #include <string>
@@ -18,16 +19,19 @@ struct Invocation {
         kCheck,  ///< only validate
         kHealth, ///< only ask the server of `health`
         kRender, ///< `job`, without serving
+        kRecord, ///< `record_job`, without serving
     };
     Kind kind = Kind::kServe;
     Config config;
     service::HealthQuestion health;
     OfflineJob job;
+    RecordJob record_job;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. "render" in front asks for files instead of a service. Reads files that flags name, changes nothing.
+/// Reads flags, or a --config file with the same names. "render" or "record" in front asks for files instead of a service. Reads files that
+/// flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

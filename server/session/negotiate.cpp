@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/negotiate.h"
 
+#include "server/session/recorded.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -214,12 +216,13 @@ Chosen<std::uint32_t> choose_chunk_bytes(const v1::Configure& wanted, const Limi
 
 } // namespace
 
-tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Channels channels, const Limits& limits) {
-    const auto channel = choose_channel(wanted.channel(), channels);
+tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits) {
+    const auto channel = choose_channel(asked.channel(), channels);
     if (!channel) {
         return tl::unexpected(channel.error());
     }
     const feed::ChannelInfo& info = (*channel)->info();
+    const v1::Configure wanted = narrowed(asked, info);
     const auto mode = choose_mode(wanted);
     if (!mode) {
         return tl::unexpected(mode.error());
@@ -231,6 +234,9 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Chan
     auto wish = choose_wish(wanted, info, *mode, *view_set);
     if (!wish) {
         return tl::unexpected(wish.error());
+    }
+    if (auto problem = recorded_problem(*wish, info)) {
+        return refuse(v1::REFUSAL_REASON_UNSUPPORTED, std::move(problem->field), std::move(problem->message));
     }
     const auto rate = choose_rate(wanted, info);
     if (!rate) {

@@ -35,7 +35,7 @@ struct Refusal {
 using Channels = std::span<const std::shared_ptr<feed::Feed>>;
 
 /// Chooses a configuration, or says what is wrong. Only looks: admission is up to the feed.
-tl::expected<Configuration, Refusal> negotiate(const v1::Configure& wanted, Channels channels, const Limits& limits);
+tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits);
 
 /// `configuration` for the client.
 v1::Configured to_message(const Configuration& configuration, std::uint32_t request_id, std::uint32_t epoch,

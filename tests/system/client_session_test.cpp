@@ -338,6 +338,35 @@ TEST_F(SessionTest, ReportsAServerThatIsNotThere) {
     EXPECT_TRUE(ended->error.is_transient());
 }
 
+TEST(Backoff, AsksOftenWhileNobodyAnswersAndSeldomAfterThat) {
+    Backoff backoff(7);
+    std::chrono::milliseconds longest{0};
+    std::chrono::milliseconds sum{0};
+    for (int i = 0; i < Backoff::kQuickAttempts; ++i) {
+        const auto wait = backoff.next(Obstacle::kUnreachable);
+        longest = std::max(longest, wait);
+        sum += wait;
+    }
+    EXPECT_LE(longest, Backoff::kLongestUnreachable);
+    EXPECT_GE(sum, 30s) << "a minute, each wait shortened by up to half";
+    for (int i = 0; i < 5; ++i) {
+        longest = std::max(longest, backoff.next(Obstacle::kUnreachable));
+    }
+    EXPECT_GE(longest, Backoff::kLongest / 2) << "nobody is waited for in haste for ever";
+    backoff.reset();
+    EXPECT_LE(backoff.next(Obstacle::kUnreachable), Backoff::kFirst);
+}
+
+TEST(Backoff, AServerThatRefusesIsAskedSeldom) {
+    Backoff backoff(7);
+    std::chrono::milliseconds last{0};
+    for (int i = 0; i < 8; ++i) {
+        last = backoff.next(Obstacle::kRefused);
+    }
+    EXPECT_GE(last, Backoff::kLongest / 2);
+    EXPECT_LE(backoff.next(Obstacle::kUnreachable), Backoff::kLongestUnreachable) << "it has been started again";
+}
+
 TEST(ClockSync, TrustsTheShortestRoundTrip) {
     ClockSync clock;
     EXPECT_FALSE(clock.client_from_server_ns(5));

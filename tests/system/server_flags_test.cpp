@@ -106,6 +106,36 @@ TEST(Flags, ReadsEverything) {
     EXPECT_EQ(config.fixed_time_s, 1.5);
 }
 
+TEST(Flags, RecordsAndReplays) {
+    const Invocation both = read({"--scene", kFile, "--record", "out.fcrec", "--record-form", "views:3x3", "--record-form",
+                                  "g-buffer:jpeg:50", "--record-frames", "9", "--replay", "again=README.md",
+                                  "--replay-fps", "2.5"});
+    EXPECT_THAT(both.problems, IsEmpty());
+    EXPECT_EQ(both.config.records.at(0).file, "out.fcrec");
+    EXPECT_EQ(both.config.record_frames, 9U);
+    EXPECT_EQ(both.config.record_forms.at(1).quality, 50);
+    EXPECT_EQ(both.config.replays.at(0).name, "again");
+    EXPECT_EQ(both.config.replays.at(0).file, "README.md");
+    EXPECT_EQ(both.config.replays.at(0).frames_per_second, 2.5F);
+    EXPECT_THAT(read({"--replay", kFile}).problems, IsEmpty()) << "a replay needs no scene";
+}
+
+TEST(Flags, RefusesRecordingsThatCannotBe) {
+    EXPECT_THAT(read({"--replay", "nowhere.fcrec"}).problems, Contains(HasSubstr("--replay nowhere.fcrec: there is no")));
+    EXPECT_THAT(read({"--replay", kFile, "--replay-fps", "0"}).problems, Contains(HasSubstr("--replay-fps")));
+    EXPECT_THAT(read({"--scene", kFile, "--record-form", "views:3"}).problems,
+                Contains(HasSubstr("--record-form views:3: write views")));
+    EXPECT_THAT(read({"--replay", kFile, "--record", "a.fcrec"}).problems, Contains(HasSubstr("--record a.fcrec")));
+    EXPECT_THAT(read({"--channel", "a=README.md", "--channel", "b=README.md", "--record", "c=x.fcrec"}).problems,
+                Contains(HasSubstr("there is no scene's channel 'c'")));
+    EXPECT_THAT(read({"record", "--channel", "a=README.md", "--channel", "b=README.md"}).problems,
+                Contains(HasSubstr("exactly one scene")));
+    const Invocation job = read({"record", "--scene", kFile, "--out", "a.fcrec", "--count", "7"});
+    EXPECT_THAT(job.problems, IsEmpty());
+    EXPECT_EQ(job.kind, Invocation::Kind::kRecord);
+    EXPECT_EQ(job.record_job.frame_count, 7U);
+}
+
 TEST(Flags, RefusesToListenForTheWorld) {
     for (const char* const listen : {"0.0.0.0:50151", "192.168.1.4:50151", "[::]:50151", "example.org:80"}) {
         EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("loopback"))) << listen;

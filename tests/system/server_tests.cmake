@@ -4,12 +4,16 @@ add_library(server_synthetic STATIC ${CMAKE_CURRENT_LIST_DIR}/server_synthetic.c
 target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
 
-fieldcast_test(server_session_test LABELS quick
+fieldcast_test(server_session_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
+fieldcast_test(server_recording_test LABELS quick tsan
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_recording_test.cpp
+    DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
@@ -31,6 +35,10 @@ fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
     DEPENDS fieldcast_server_channel)
+fieldcast_test(server_replay_test LABELS quick tsan
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_replay_test.cpp
+    DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_service)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
 # like a race. What the server's own threads share is in server_session_test.
 if(NOT FIELDCAST_SANITIZE MATCHES thread)

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/channel/channel_list.h"
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+#include "core/scene/bundle.h"
+
+#include <algorithm>
+
+namespace fieldcast::channel {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+} // namespace
+
+ChannelList::ChannelList(const ops::Config& config, metrics::Registry& registry) {
+    if (!config.channels.empty()) {
+        device_.emplace(gpu::DeviceOptions{.name_contains = config.device, .validation = config.has_validation});
+        log::info("device", {{"name", device_->info().name}, {"driver", device_->info().driver}});
+    }
+    start_channels(config, registry);
+    start_replays(config, registry);
+    start_recorders(config, registry);
+}
+
+void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
+    const std::string& name = feed->info().name;
+    if (std::ranges::any_of(feeds_, [&](const auto& other) { return other->info().name == name; })) {
+        throw UserError("two channels are named '" + name + "'; tell them apart with --channel NAME=FILE or --replay NAME=FILE");
+    }
+    feeds_.push_back(feed);
+}
+
+void ChannelList::start_channels(const ops::Config& config, metrics::Registry& registry) {
+    for (const ops::ChannelChoice& choice : config.channels) {
+        const auto begin = Clock::now();
+        channels_.push_back(std::make_unique<Channel>(*device_, config, choice, registry));
+        add_feed(channels_.back()->feed());
+        const feed::ChannelInfo& info = feeds_.back()->info();
+        log::info("channel ready", {{"channel", info.name},
+                                    {"scene", scene::to_hex(info.scene_hash)},
+                                    {"camera", info.camera},
+                                    {"width_px", info.source_width_px},
+                                    {"height_px", info.source_height_px},
+                                    {"spacing_m", info.largest_grid.geometry.spacing_m.x},
+                                    {"seconds", seconds_since(begin)}});
+    }
+}
+
+void ChannelList::start_replays(const ops::Config& config, metrics::Registry& registry) {
+    for (const recording::ReplaySetup& setup : config.replays) {
+        const auto begin = Clock::now();
+        replays_.push_back(std::make_unique<recording::Replay>(setup, registry));
+        add_feed(replays_.back()->feed());
+        const feed::ChannelInfo& info = feeds_.back()->info();
+        std::string forms;
+        for (const feed::Wish& wish : info.recorded) {
+            forms += (forms.empty() ? "" : "; ") + feed::to_text(wish);
+        }
+        log::info("replay ready", {{"channel", info.name},
+                                   {"file", setup.file.string()},
+                                   {"scene", scene::to_hex(info.scene_hash)},
+                                   {"frames", replays_.back()->frame_count()},
+                                   {"recorded", forms},
+                                   {"seconds", seconds_since(begin)}});
+    }
+}
+
+void ChannelList::start_recorders(const ops::Config& config, metrics::Registry& registry) {
+    for (const ops::RecordChoice& record : config.records) {
+        const auto found = std::ranges::find_if(
+            feeds_, [&](const auto& feed) { return record.channel.empty() || feed->info().name == record.channel; });
+        FC_ASSERT(found != feeds_.end(), "the configuration names a channel that is not there");
+        recording::RecorderSetup setup{.file = record.file, .wishes = {}, .max_frames = config.record_frames};
+        for (const recording::Form& form : config.record_forms) {
+            setup.wishes.push_back(recording::wish_of(form, (*found)->info()));
+        }
+        recorders_.push_back(std::make_unique<recording::Recorder>(*found, std::move(setup), registry));
+    }
+}
+
+} // namespace fieldcast::channel

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/gpu/device.h"
+#include "server/channel/channel.h"
+#include "server/recording/recorder.h"
+#include "server/recording/replay.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fieldcast::channel {
+
+/// All channels of a server, rendered ones and replays, and what records them. Opens a device only if something is
+/// rendered.
+class ChannelList {
+public:
+    /// All channels are ready when constructed. `config` and `registry` must outlive it. Throws UserError if a scene or a
+    /// recording is not usable, or two channels have one name.
+    ChannelList(const ops::Config& config, metrics::Registry& registry);
+
+    const std::vector<std::shared_ptr<feed::Feed>>& feeds() const { return feeds_; } ///< those of scenes first
+
+private:
+    void start_channels(const ops::Config& config, metrics::Registry& registry);
+    void start_replays(const ops::Config& config, metrics::Registry& registry);
+    void start_recorders(const ops::Config& config, metrics::Registry& registry);
+    void add_feed(const std::shared_ptr<feed::Feed>& feed);
+
+    std::optional<gpu::Device> device_;
+    std::vector<std::shared_ptr<feed::Feed>> feeds_;
+    std::vector<std::unique_ptr<Channel>> channels_;
+    std::vector<std::unique_ptr<recording::Replay>> replays_;
+    std::vector<std::unique_ptr<recording::Recorder>> recorders_; ///< end before what they record
+};
+
+} // namespace fieldcast::channel

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/recording/recorder.h"
+
+#include "core/base/error.h"
+#include "core/base/log.h"
+
+namespace fieldcast::recording {
+
+namespace {
+
+constexpr std::size_t kMaxWaiting = 8; ///< frames between the channel and the disk
+
+feed::ChannelInfo with_forms(feed::ChannelInfo info, const std::vector<feed::Wish>& wishes) {
+    info.recorded = wishes;
+    return info;
+}
+
+metrics::Counter& counter(metrics::Registry& registry, const char* name, const char* help, const std::string& channel) {
+    return registry.counter({name, help}, {{"channel", channel}});
+}
+
+} // namespace
+
+Recorder::Recorder(const std::shared_ptr<feed::Feed>& feed, RecorderSetup setup, metrics::Registry& registry)
+    : setup_(std::move(setup)), channel_(feed->info().name),
+      frames_(counter(registry, "fieldcast_recorded_frames_total", "Frames that were written to a recording.", channel_)),
+      bytes_(counter(registry, "fieldcast_recorded_bytes_total", "Bytes that were written to a recording.", channel_)),
+      lost_(counter(registry, "fieldcast_recording_lost_frames_total",
+                    "Frames missing in a recording: the disk was too slow.", channel_)),
+      writer_(setup_.file, with_forms(feed->info(), setup_.wishes)) {
+    for (const feed::Wish& wish : setup_.wishes) {
+        const bool is_first = subscriptions_.empty(); // every subscriber gets every frame: one queue is enough
+        auto subscription = feed::Feed::subscribe(feed, wish, is_first ? taker() : [](const feed::FramePtr&) {});
+        if (!subscription) {
+            throw UserError(setup_.file.string() + ": " + subscription.error());
+        }
+        subscriptions_.push_back(std::move(*subscription));
+    }
+    log::info("recording", {{"channel", channel_}, {"file", setup_.file.string()}});
+    thread_ = std::jthread([this](const std::stop_token& stop) { write_frames(stop); });
+}
+
+Recorder::~Recorder() {
+    thread_.request_stop();
+    thread_ = {};
+    log::info("recording finished", {{"channel", channel_},
+                                     {"file", setup_.file.string()},
+                                     {"frames", writer_.frame_count()},
+                                     {"bytes", writer_.file_bytes()}});
+}
+
+feed::FrameCallback Recorder::taker() {
+    return [queue = queue_, &lost = lost_](const feed::FramePtr& frame) {
+        {
+            auto waiting = queue->waiting.lock();
+            if (waiting->size() >= kMaxWaiting) {
+                lost.add();
+                return;
+            }
+            waiting->push_back(frame);
+        }
+        queue->changed.notify_all();
+    };
+}
+
+void Recorder::write_frames(const std::stop_token& stop) {
+    try {
+        while (!has_ended_) {
+            const feed::FramePtr frame = next(stop);
+            if (frame == nullptr) {
+                break;
+            }
+            write(frame);
+        }
+        writer_.finish();
+    } catch (const std::exception& problem) {
+        log::error("recording failed", {{"channel", channel_}, {"problem", problem.what()}});
+    }
+    subscriptions_.clear(); // the channel may sleep again
+    has_ended_ = true;
+}
+
+feed::FramePtr Recorder::next(const std::stop_token& stop) {
+    const std::stop_callback wake(stop, [this] {
+        { auto waiting = queue_->waiting.lock(); } // not between a waiter's test and its sleep
+        queue_->changed.notify_all();
+    });
+    auto waiting = queue_->waiting.lock();
+    waiting.wait(queue_->changed, [&](const auto& frames) { return stop.stop_requested() || !frames.empty(); });
+    if (waiting->empty()) {
+        return nullptr;
+    }
+    const feed::FramePtr frame = std::move(waiting->front());
+    waiting->pop_front();
+    return frame;
+}
+
+void Recorder::write(const feed::FramePtr& frame) {
+    const std::uint64_t before = writer_.file_bytes();
+    if (writer_.add(*frame, std::chrono::nanoseconds(frame->times.encode_end_ns))) {
+        frames_.add();
+        bytes_.add(writer_.file_bytes() - before);
+    }
+    has_ended_ = setup_.max_frames > 0 && writer_.frame_count() >= setup_.max_frames;
+}
+
+} // namespace fieldcast::recording

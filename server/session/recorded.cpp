@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/session/recorded.h"
+
+#include "core/wire/convert.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fieldcast::session {
+
+namespace {
+
+constexpr std::array kUnasked{v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW}; // what clients get that name no codecs
+
+const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
+                                         [](const v1::CodecPreference& p) { return p.semantic(); });
+    return found == wanted.codecs().end() || found->codecs().empty() ? nullptr : &*found;
+}
+
+/// How early the client names that codec; nothing: it does not want it.
+std::optional<std::size_t> rank_of(const wire::PlaneChoice& recorded, const v1::Configure& wanted) {
+    const auto place_in = [&](const auto& codecs) -> std::optional<std::size_t> {
+        const auto found = std::ranges::find(codecs, wire::to_proto(recorded.encoding.codec));
+        return found == codecs.end() ? std::nullopt : std::optional<std::size_t>(found - codecs.begin());
+    };
+    const v1::CodecPreference* const preference = find_preference(wanted, recorded.semantic);
+    if (preference == nullptr) {
+        return place_in(kUnasked);
+    }
+    const bool has_quality = preference->quality() == 0 || !codec::is_lossy(recorded.encoding.codec) ||
+                             preference->quality() == recorded.encoding.quality;
+    return has_quality ? place_in(preference->codecs()) : std::nullopt;
+}
+
+void ask_for(const wire::PlaneChoice& recorded, v1::Configure& wanted) {
+    const auto semantic = wire::to_proto(recorded.semantic);
+    auto preference = std::ranges::find(*wanted.mutable_codecs(), semantic,
+                                        [](const v1::CodecPreference& p) { return p.semantic(); });
+    v1::CodecPreference& only =
+        preference == wanted.mutable_codecs()->end() ? *wanted.add_codecs() : *preference;
+    only.set_semantic(semantic);
+    only.clear_codecs();
+    only.add_codecs(wire::to_proto(recorded.encoding.codec));
+    only.set_quality(recorded.encoding.quality);
+}
+
+wire::PlaneChoice colour_of(const feed::ViewsWish& recorded) {
+    return {.semantic = PlaneSemantic::kColour, .encoding = recorded.format.encoding};
+}
+
+/// Whether everything that `wanted` says about views fits that recording.
+bool fits(const v1::Configure& wanted, const feed::ViewsWish& recorded, const feed::ChannelInfo& channel) {
+    const wire::ViewFormat& format = recorded.format;
+    const bool has_size = wanted.view_width_px() == 0 && wanted.view_height_px() == 0;
+    if (!has_size && (wanted.view_width_px() != format.width_px || wanted.view_height_px() != format.height_px)) {
+        return false;
+    }
+    constexpr float kRounding = 1e-4F; // a client may have computed the field of view from degrees
+    const float fovy = wanted.fovy_rad();
+    if (fovy != 0.0F && !(std::abs(fovy - format.fovy_rad) <= kRounding * format.fovy_rad)) {
+        return false;
+    }
+    if (!wanted.has_grid()) {
+        return true;
+    }
+    const auto grid = wire::from_proto(wanted.grid(), channel.largest_grid.geometry);
+    return grid && grid->geometry == format.geometry &&
+           feed::covers(channel.recorded, feed::ViewsWish{.format = format, .grid = *grid});
+}
+
+bool narrow_views(v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    const feed::ViewsWish* best = nullptr;
+    std::optional<std::size_t> best_rank;
+    for (const feed::Wish& wish : channel.recorded) {
+        const auto* const recorded = std::get_if<feed::ViewsWish>(&wish);
+        if (recorded == nullptr || !fits(wanted, *recorded, channel)) {
+            continue;
+        }
+        const auto rank = rank_of(colour_of(*recorded), wanted);
+        if (rank && (!best_rank || *rank < *best_rank)) {
+            best = recorded;
+            best_rank = rank;
+        }
+    }
+    if (best == nullptr) {
+        return false;
+    }
+    if (!wanted.has_grid()) {
+        wire::to_proto(best->grid, *wanted.mutable_grid());
+    }
+    wanted.set_view_width_px(best->format.width_px);
+    wanted.set_view_height_px(best->format.height_px);
+    wanted.set_fovy_rad(best->format.fovy_rad);
+    ask_for(colour_of(*best), wanted);
+    return true;
+}
+
+bool is_asked(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const bool is_light = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
+    return is_light || wanted.planes() == v1::PLANE_SET_WITH_G_BUFFER;
+}
+
+bool narrow_planes(v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    for (const feed::Wish& wish : channel.recorded) {
+        const auto* const recorded = std::get_if<feed::PlanesWish>(&wish);
+        if (recorded == nullptr || !std::ranges::all_of(recorded->choices, [&](const wire::PlaneChoice& choice) {
+                return !is_asked(wanted, choice.semantic) || rank_of(choice, wanted).has_value();
+            })) {
+            continue;
+        }
+        for (const wire::PlaneChoice& choice : recorded->choices) {
+            if (is_asked(wanted, choice.semantic)) {
+                ask_for(choice, wanted);
+            }
+        }
+        return true;
+    }
+    return false;
+}
+
+} // namespace
+
+v1::Configure narrowed(v1::Configure wanted, const feed::ChannelInfo& channel) {
+    if (channel.recorded.empty()) {
+        return wanted;
+    }
+    const std::vector<int> modes = wanted.modes().empty()
+                                       ? std::vector<int>{v1::DELIVERY_MODE_VIEWS}
+                                       : std::vector<int>(wanted.modes().begin(), wanted.modes().end());
+    for (const int mode : modes) {
+        const bool is_found = (mode == v1::DELIVERY_MODE_VIEWS && narrow_views(wanted, channel)) ||
+                              (mode == v1::DELIVERY_MODE_SCENE && narrow_planes(wanted, channel));
+        if (is_found) {
+            wanted.clear_modes();
+            wanted.add_modes(static_cast<v1::DeliveryMode>(mode));
+            break;
+        }
+    }
+    return wanted;
+}
+
+std::optional<RecordedProblem> recorded_problem(const feed::Wish& wish, const feed::ChannelInfo& channel) {
+    if (channel.recorded.empty() || feed::covers(channel.recorded, wish)) {
+        return std::nullopt;
+    }
+    std::string recorded;
+    bool has_mode = false;
+    for (const feed::Wish& one : channel.recorded) {
+        recorded += (recorded.empty() ? "" : "; ") + feed::to_text(one);
+        has_mode = has_mode || one.index() == wish.index();
+    }
+    const bool wants_planes = std::holds_alternative<feed::PlanesWish>(wish);
+    return RecordedProblem{.field = !has_mode ? "modes" : wants_planes ? "planes" : "grid",
+                           .message = "channel '" + channel.name + "' is a recording without " + feed::to_text(wish) +
+                                      "; recorded: " + recorded};
+}
+
+} // namespace fieldcast::session
