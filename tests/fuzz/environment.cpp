@@ -19,8 +19,9 @@ void environment(Bytes input) {
         FC_ASSERT(pixels <= options.limits.max_image_pixels, "no more pixels than the limit");
         FC_ASSERT(sky.pixels.size() == pixels, "an image has all its pixels");
         for (const glm::vec3& pixel : sky.pixels) {
-            FC_ASSERT(std::isfinite(pixel.x + pixel.y + pixel.z) && glm::all(glm::greaterThanEqual(pixel, glm::vec3(0))),
-                      "light is finite and not negative");
+            for (int channel = 0; channel < 3; ++channel) {
+                FC_ASSERT(std::isfinite(pixel[channel]) && pixel[channel] >= 0.0F, "light is finite and not negative");
+            }
         }
     });
 }

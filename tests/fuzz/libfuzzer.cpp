@@ -4,6 +4,7 @@
 #include "tests/fuzz/targets.h"
 
 #include "core/base/log.h"
+#include "core/wire/protobuf_log.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -32,6 +33,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
         std::exit(2);
     }
     fieldcast::log::set_level(fieldcast::log::Level::kError);
+    fieldcast::wire::take_protobuf_log();
     return 0;
 }
 

@@ -36,6 +36,7 @@ v1::Configure configure(v1::DeliveryMode mode, v1::Codec codec) {
         v1::CodecPreference& preference = *wanted.add_codecs();
         preference.set_semantic(semantic);
         preference.add_codecs(codec);
+        preference.add_codecs(v1::CODEC_RAW);
     }
     return wanted;
 }
@@ -111,6 +112,7 @@ void write_sessions(const fs::path& folder) {
     };
     for (const Kind& kind : {Kind{"views_zstd", v1::DELIVERY_MODE_VIEWS, v1::CODEC_ZSTD_FILTERED},
                              Kind{"views_jpeg", v1::DELIVERY_MODE_VIEWS, v1::CODEC_JPEG},
+                             Kind{"views_h264", v1::DELIVERY_MODE_VIEWS, v1::CODEC_H264},
                              Kind{"scene_raw", v1::DELIVERY_MODE_SCENE, v1::CODEC_RAW},
                              Kind{"scene_jpeg", v1::DELIVERY_MODE_SCENE, v1::CODEC_JPEG}}) {
         const Record record = Recording().run(configure(kind.mode, kind.codec));

@@ -19,7 +19,7 @@ class Client {
 public:
     explicit Client(std::uint8_t wish) {
         wish_.mode = (wish & 1U) == 0 ? net::Mode::kViews : net::Mode::kScene;
-        wish_.codecs = {codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered, codec::CodecId::kRaw};
+        wish_.codecs = {codec::CodecId::kH264, codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered, codec::CodecId::kRaw};
     }
 
     void take(v1::ServerMessage message) {

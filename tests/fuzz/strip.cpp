@@ -31,9 +31,12 @@ void decode(Bytes input, const codec::StripHeader& header, codec::CodecId codec,
     constexpr std::byte kBefore{0x5A};
     Plane reference = plane;
     fill(reference);
+    const std::vector<std::byte> base =
+        header.is_predicted ? codec::encode_strip(reference, header.band, {.encoding = {codec::CodecId::kH264, 75}})
+                            : std::vector<std::byte>();
     for (const Plane* const known : {static_cast<const Plane*>(nullptr), static_cast<const Plane*>(&reference)}) {
         std::ranges::fill(plane.bytes, kBefore);
-        const auto result = codec::decode_strip(input, header.band, {codec, known}, plane);
+        const auto result = codec::decode_strip(input, header.band, {codec, known, base}, plane);
         FC_ASSERT(result || !result.error().message.empty(), "an error says what is wrong");
         FC_ASSERT(!result || known != nullptr || !header.needs_reference(), "there is nothing to refer to");
         expect_only_band_changed(plane, header.band, kBefore);
@@ -59,6 +62,9 @@ void strip(Bytes input) {
     decode(input, *header, codec::CodecId::kZstdFiltered, *plane);
     if (header->coding == codec::StripCoding::kJpeg) {
         decode(input, *header, codec::CodecId::kJpeg, *plane);
+    }
+    if (header->coding == codec::StripCoding::kH264 && plane->format == PlaneFormat::kRgb8) {
+        decode(input, *header, codec::CodecId::kH264, *plane);
     }
 }
 
