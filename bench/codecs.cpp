@@ -93,7 +93,7 @@ void add_codecs_command(CLI::App& app) {
     auto options = std::make_shared<CodecsOptions>();
     CLI::App* command = app.add_subcommand("codecs", "Bytes and times of every codec, and what lossy ones take away");
     command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
-    command->add_option("--grid", options->grid, "ROWSxCOLUMNS; its corners and one inner view are made")
+    command->add_option("--grid", options->grid, "ROWSxCOLUMNS; its corners, an inner view and the source's are made")
         ->capture_default_str();
     command->add_option("--size", options->size, "size of source and views")->capture_default_str();
     command->add_option("--frames", options->settings.frames, "frames rendered, from a cold start")

@@ -4,6 +4,7 @@
 #include "bench/interrupt.h"
 #include "bench/progress.h"
 #include "core/image/metrics.h"
+#include "core/wire/base_view.h"
 
 #include <algorithm>
 #include <numeric>
@@ -41,18 +42,24 @@ bool is_light(PlaneSemantic semantic) {
     return semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
 }
 
-/// The corners of a grid, and a view within.
+/// Whether planes of a source frame can be coded so, besides views.
+bool is_for_planes(const Coding& coding) {
+    return codec::fits(coding.encoding.codec, PlaneFormat::kR11G11B10F);
+}
+
+/// The corners of a grid, a view within, and the one that views are predicted from.
 std::vector<LatticePosition> chosen_positions(const ViewGrid& grid) {
     const std::uint32_t bottom = grid.rows - 1;
     const std::uint32_t right = grid.cols - 1;
     std::vector<LatticePosition> positions;
     for (const auto& [row, col] : {std::pair(0U, 0U), std::pair(0U, right), std::pair(bottom / 2, grid.cols / 2),
                                    std::pair(bottom, 0U), std::pair(bottom, right)}) {
-        const LatticePosition position = lattice_position(grid, row, col);
-        if (std::ranges::find(positions, position) == positions.end()) {
-            positions.push_back(position);
-        }
+        positions.push_back(lattice_position(grid, row, col));
     }
+    positions.push_back(wire::base_position(positions.front()));
+    std::ranges::sort(positions);
+    const auto [first, last] = std::ranges::unique(positions);
+    positions.erase(first, last);
     return positions;
 }
 
@@ -84,8 +91,8 @@ CodecsRun::CodecsRun(const gpu::Device& device, LightFieldScene& scene, const Co
       positions_(chosen_positions(scene.grid())), run_(device, scene, render_settings(scene, settings), true),
       planes_(device), surfaces_(device, scene.gpu_scene()), uncoded_(device, scene.gpu_scene()) {
     for (const Coding& coding : codings_) {
-        const bool is_lossy = codec::is_lossy(coding.encoding.codec);
-        renderers_.push_back(is_lossy ? std::make_unique<render::GridRenderer>(device, scene.gpu_scene()) : nullptr);
+        const bool loses_light = codec::is_lossy(coding.encoding.codec) && is_for_planes(coding);
+        renderers_.push_back(loses_light ? std::make_unique<render::GridRenderer>(device, scene.gpu_scene()) : nullptr);
     }
 }
 
@@ -110,9 +117,11 @@ void CodecsRun::run() {
 void CodecsRun::measure(const SourceFrame& frame) {
     const Views uncoded = make_views(uncoded_, frame);
     for (std::size_t i = 0; i < codings_.size(); ++i) {
-        const SourceFrame decoded = measure_planes(frame, codings_[i]);
-        if (renderers_[i]) {
-            compare(make_views(*renderers_[i], decoded), uncoded, samples(kLight, codings_[i]));
+        if (is_for_planes(codings_[i])) {
+            const SourceFrame decoded = measure_planes(frame, codings_[i]);
+            if (renderers_[i]) {
+                compare(make_views(*renderers_[i], decoded), uncoded, samples(kLight, codings_[i]));
+            }
         }
         measure_views(uncoded, codings_[i]);
     }
@@ -126,7 +135,8 @@ SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& co
         if (!codec::fits(coding.encoding.codec, plane.format)) {
             continue;
         }
-        CodedPlane coded = code_plane(plane, coding, before_.find(plane.semantic), frame.header.settings.exposure);
+        CodedPlane coded = code_plane(plane, coding, {.before = before_.find(plane.semantic)},
+                                      frame.header.settings.exposure);
         samples(name_of(plane.semantic), coding).add(coded);
         if (is_light(plane.semantic)) {
             light.bytes += coded.bytes;
@@ -140,13 +150,19 @@ SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& co
 }
 
 void CodecsRun::measure_views(const Views& views, const Coding& coding) {
+    const LatticePosition base = wire::base_position(positions_.front());
+    const Plane& base_image = std::ranges::find(views.views, base, &View::position)->image;
     for (std::size_t i = 0; i < views.views.size(); ++i) {
         const Plane& image = views.views[i].image;
+        if (coding.uses_base && views.views[i].position == base) {
+            continue; // it stands alone
+        }
         const Plane* const before = views_before_.views.empty() ? nullptr : &views_before_.views[i].image;
         if (coding.uses_key_frame && before == nullptr) {
             continue;
         }
-        const CodedPlane coded = code_plane(image, coding, before, views.header.settings.exposure);
+        const CodedPlane coded = code_plane(image, coding, {.before = before, .base = &base_image},
+                                             views.header.settings.exposure);
         Samples& view = samples(kView, coding);
         view.add(coded);
         if (codec::is_lossy(coding.encoding.codec)) {

@@ -22,21 +22,29 @@ std::vector<Coding> all_codings(const std::vector<std::uint32_t>& qualities) {
                                 {"zstd", {codec::CodecId::kZstdFiltered, 0}},
                                 {"zstd, key frame", {codec::CodecId::kZstdFiltered, 0}, true}};
     for (const std::uint32_t quality : qualities) {
-        codings.push_back(
-            {"jpeg " + std::to_string(quality), {codec::CodecId::kJpeg, static_cast<std::uint8_t>(quality)}});
+        const std::string text = std::to_string(quality);
+        const auto number = static_cast<std::uint8_t>(quality);
+        codings.push_back({"jpeg " + text, {codec::CodecId::kJpeg, number}});
+        codings.push_back({"h264 " + text, {codec::CodecId::kH264, number}, false, true});
+        codings.push_back({"h264 " + text + " alone", {codec::CodecId::kH264, number}});
     }
     return codings;
 }
 
-CodedPlane code_plane(const Plane& plane, const Coding& coding, const Plane* reference, float exposure) {
-    const Plane* const key = coding.uses_key_frame ? reference : nullptr;
+CodedPlane code_plane(const Plane& plane, const Coding& coding, const Neighbours& neighbours, float exposure) {
+    const Plane* const key = coding.uses_key_frame ? neighbours.before : nullptr;
+    const Plane* const base = coding.uses_base ? neighbours.base : nullptr;
     const std::vector<codec::RowBand> bands = codec::strip_bands(plane.height_px);
     std::vector<std::vector<std::byte>> strips(bands.size());
+    std::vector<std::vector<std::byte>> base_strips(bands.size());
+    for (std::size_t i = 0; base != nullptr && i < bands.size(); ++i) { // a receiver has them
+        base_strips[i] = codec::encode_strip(*base, bands[i], {.encoding = coding.encoding});
+    }
     CodedPlane coded;
     const double begin_ms = processor_ms();
     for (std::size_t i = 0; i < bands.size(); ++i) {
         strips[i] = codec::encode_strip(
-            plane, bands[i], {.encoding = coding.encoding, .reference = key, .exposure = exposure});
+            plane, bands[i], {.encoding = coding.encoding, .reference = key, .base = base, .exposure = exposure});
         coded.bytes += static_cast<double>(strips[i].size());
     }
     const double encoded_ms = processor_ms();
@@ -44,7 +52,8 @@ CodedPlane code_plane(const Plane& plane, const Coding& coding, const Plane* ref
     coded.decoded.bytes.assign(plane.bytes.size(), std::byte{0});
     const double zeroed_ms = processor_ms();
     for (std::size_t i = 0; i < bands.size(); ++i) {
-        const auto result = codec::decode_strip(strips[i], bands[i], {coding.encoding.codec, key}, coded.decoded);
+        const codec::Announced announced{coding.encoding.codec, key, base_strips[i]};
+        const auto result = codec::decode_strip(strips[i], bands[i], announced, coded.decoded);
         if (!result) {
             throw std::logic_error(coding.name + ": " + result.error().message);
         }

@@ -13,9 +13,10 @@ struct Coding {
     std::string name; ///< as tables show it
     codec::Encoding encoding{};
     bool uses_key_frame = false; ///< strips may refer to the frame before
+    bool uses_base = false;      ///< strips are predicted from the base view
 };
 
-/// RAW, ZSTD_FILTERED, the same with key frames, and JPEG of each quality.
+/// RAW, ZSTD_FILTERED, the same with key frames, and of each quality JPEG and H264, alone and predicted.
 std::vector<Coding> all_codings(const std::vector<std::uint32_t>& qualities);
 
 /// A plane that was encoded and decoded.
@@ -26,8 +27,14 @@ struct CodedPlane {
     double decode_ms = 0.0;
 };
 
-/// `reference`: the same plane of the frame before, for codings that use it; null: none. Throws std::logic_error if a
+/// What a plane may be coded from, for codings that use it; null: nothing.
+struct Neighbours {
+    const Plane* before = nullptr; ///< the same plane of the frame before
+    const Plane* base = nullptr;   ///< of the base view
+};
+
+/// Encoding a base again is part of the time that prediction takes, as it is for a server. Throws std::logic_error if a
 /// lossless coding changed a pixel.
-CodedPlane code_plane(const Plane& plane, const Coding& coding, const Plane* reference, float exposure);
+CodedPlane code_plane(const Plane& plane, const Coding& coding, const Neighbours& neighbours, float exposure);
 
 } // namespace fieldcast::bench

@@ -78,9 +78,9 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
         ->check(CLI::IsMember({"g-buffer", "illumination"}))
         ->capture_default_str();
     app.add_option("--codec", text.codecs,
-                   "Of views, or of the illumination in mode scene, most wanted first: zstd (lossless), raw, jpeg")
+                   "Of views, or of the illumination in mode scene, most wanted first: zstd (lossless), raw, jpeg; of views: h264")
         ->delimiter(',')
-        ->check(CLI::IsMember({"zstd", "raw", "jpeg"}))
+        ->check(CLI::IsMember({"zstd", "raw", "jpeg", "h264"}))
         ->capture_default_str();
     app.add_option("--quality", text.quality, "Of lossy codecs, 1 to 100; without it: the server's choice")
         ->check(CLI::Range(1, 100));
@@ -153,6 +153,7 @@ void read_grids(const FlagText& text, net::Wish& wish) {
 codec::CodecId codec_of(const std::string& word) {
     return word == "raw"    ? codec::CodecId::kRaw
            : word == "jpeg" ? codec::CodecId::kJpeg
+           : word == "h264" ? codec::CodecId::kH264
                             : codec::CodecId::kZstdFiltered;
 }
 

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/host_port.h"
 #include "core/base/log.h"
+#include "core/wire/protobuf_log.h"
 
 #include <grpc/support/log.h>
 #include <mutex>
@@ -88,6 +89,7 @@ Connection::Connection(const std::string& address, const Access& access)
           State{.channel = grpc::CreateCustomChannel(address, credentials(access), channel_arguments(access)),
                 .token = sendable_token(address, access)})) {
     log_transport();
+    wire::take_protobuf_log();
 }
 
 Connection::~Connection() = default;

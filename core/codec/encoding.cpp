@@ -8,17 +8,19 @@ std::optional<CodecId> codec_from_number(std::uint64_t number) {
     case CodecId::kRaw:
     case CodecId::kZstdFiltered:
     case CodecId::kJpeg:
+    case CodecId::kH264:
         return number <= 0xFF ? std::optional(static_cast<CodecId>(number)) : std::nullopt;
     }
     return std::nullopt;
 }
 
 bool is_lossy(CodecId codec) {
-    return codec == CodecId::kJpeg;
+    return codec == CodecId::kJpeg || codec == CodecId::kH264;
 }
 
 bool fits(CodecId codec, PlaneFormat format) {
-    return !is_lossy(codec) || format == PlaneFormat::kRgb8 || format == PlaneFormat::kR11G11B10F;
+    const bool is_light = format == PlaneFormat::kR11G11B10F;
+    return !is_lossy(codec) || format == PlaneFormat::kRgb8 || (is_light && codec == CodecId::kJpeg);
 }
 
 } // namespace fieldcast::codec

@@ -14,6 +14,7 @@ enum class CodecId : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< predictor per format, byte planes, zstd level 1; lossless
     kJpeg = 3,         ///< kRgb8, kR11G11B10F: baseline JPEG without subsampling; lossy
+    kH264 = 4,         ///< kRgb8: H.264, views predicted from one view of the same frame; lossy
 };
 
 /// The codec with that number, or nothing.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/codec/plane_codec.h"
 
+#include "core/codec/h264.h"
 #include "core/codec/jpeg.h"
 #include "core/codec/light_curve.h"
 #include "core/codec/zstd_body.h"
@@ -41,6 +42,7 @@ struct Rows {
     BandSize size;
     std::span<const std::byte> pixels;
     std::span<const std::byte> reference;
+    std::span<const std::byte> base{}; ///< of the base view: its pixels, or to decode, its H.264; empty: none
 };
 
 /// The filter that needs fewer bits.
@@ -93,6 +95,34 @@ bool append_jpeg(PlaneFormat format, const Rows& rows, const StripOptions& optio
     return true;
 }
 
+/// False, with `strip` unchanged, if the result is not smaller than the pixels.
+bool append_h264(const Rows& rows, std::uint8_t quality, std::vector<std::byte>& strip) {
+    const RgbSize size = rgb_size(rows.size);
+    if (size.width_px > kMaxH264Side || size.row_count > kMaxH264Side) {
+        return false;
+    }
+    const std::vector<std::byte> body = rows.base.empty() ? encode_h264(rows.pixels, size, quality)
+                                                          : encode_h264_from(rows.base, rows.pixels, size, quality);
+    if (body.size() >= rows.pixels.size()) {
+        return false;
+    }
+    strip.insert(strip.end(), body.begin(), body.end());
+    return true;
+}
+
+/// The body of the strip that `header`'s is predicted from; empty if it stands alone.
+Decoded<std::span<const std::byte>> base_body(const StripHeader& header, std::span<const std::byte> base) {
+    if (!header.is_predicted) {
+        return std::span<const std::byte>();
+    }
+    const auto found = read_header(base);
+    if (!found || found->coding != StripCoding::kH264 || found->is_predicted || found->width_px != header.width_px ||
+        found->band != header.band) {
+        return decode_error("strip: predicted from a base view that has no such strip");
+    }
+    return base.subspan(kStripHeaderBytes);
+}
+
 Decoded<void> decode_jpeg_body(PlaneFormat format, BandSize size, std::span<const std::byte> body,
                                std::span<std::byte> pixels) {
     if (format != PlaneFormat::kR11G11B10F) {
@@ -122,6 +152,13 @@ void append_body(const Rows& rows, const StripOptions& options, StripHeader& hea
             return;
         }
     }
+    if (options.encoding.codec == CodecId::kH264) {
+        header.coding = StripCoding::kH264;
+        header.is_predicted = !rows.base.empty();
+        if (append_h264(rows, options.encoding.quality, strip)) {
+            return;
+        }
+    }
     if (options.encoding.codec == CodecId::kZstdFiltered) {
         header.coding = StripCoding::kZstdFiltered;
         header.filter = options.filter.value_or(choose_filter(header.format, rows));
@@ -145,6 +182,8 @@ Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> 
                            pixels);
     case StripCoding::kJpeg:
         return decode_jpeg_body(header.format, rows.size, body, pixels);
+    case StripCoding::kH264:
+        return decode_h264(rows.base, body, rgb_size(rows.size), pixels);
     case StripCoding::kRepeat:
         if (!body.empty()) {
             return decode_error("strip: a repetition has no bytes");
@@ -181,10 +220,14 @@ std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const Stri
     FC_ASSERT(is_complete(plane), "plane size");
     FC_ASSERT(plane.width_px <= kMaxPlaneSide && plane.height_px <= kMaxPlaneSide, "plane too large for the wire");
     FC_ASSERT(is_alike(options.reference, plane), "reference of another size or format");
+    FC_ASSERT(is_alike(options.base, plane), "base view of another size or format");
     FC_ASSERT(fits(options.encoding.codec, plane.format), "codec does not fit the format");
     Rows rows{band_size(plane, band), rows_of(plane.bytes, plane, band), {}};
     if (options.reference != nullptr) {
         rows.reference = rows_of(options.reference->bytes, plane, band);
+    }
+    if (options.base != nullptr) {
+        rows.base = rows_of(options.base->bytes, plane, band);
     }
     StripHeader header{.format = plane.format, .width_px = plane.width_px, .band = band};
     std::vector<std::byte> strip(kStripHeaderBytes);
@@ -198,6 +241,12 @@ bool needs_reference(std::span<const std::byte> strip) {
     const auto header = read_header(strip);
     FC_ASSERT(header.has_value(), "not a strip");
     return header->needs_reference();
+}
+
+bool can_be_base(std::span<const std::byte> strip) {
+    const auto header = read_header(strip);
+    FC_ASSERT(header.has_value(), "not a strip");
+    return header->coding == StripCoding::kH264 && !header->is_predicted;
 }
 
 Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const Announced& announced, Plane& plane) {
@@ -217,6 +266,10 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
         (announced.codec != CodecId::kJpeg || !fits(CodecId::kJpeg, plane.format))) {
         return decode_error("strip: JPEG in a plane of another codec");
     }
+    if (header->coding == StripCoding::kH264 &&
+        (announced.codec != CodecId::kH264 || !fits(CodecId::kH264, plane.format))) {
+        return decode_error("strip: H.264 in a plane of another codec");
+    }
     if (header->needs_reference() && reference == nullptr) {
         return decode_error("strip: refers to another frame, its frame does not");
     }
@@ -224,6 +277,11 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
     if (reference != nullptr) {
         rows.reference = rows_of(reference->bytes, plane, band);
     }
+    const auto base = base_body(*header, announced.base);
+    if (!base) {
+        return tl::unexpected(base.error());
+    }
+    rows.base = *base;
     return decode_body(*header, strip.subspan(kStripHeaderBytes), rows, rows_of(plane.bytes, plane, band));
 }
 

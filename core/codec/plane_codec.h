@@ -28,6 +28,9 @@ struct StripOptions {
     /// The plane that the receiver has from an earlier frame, of the same format and size, as it was before it was
     /// encoded; null: the strip refers to nothing.
     const Plane* reference = nullptr;
+    /// For kH264: the plane of the base view, of the same format and size, whose strip of the same rows stands alone;
+    /// null: this strip stands alone.
+    const Plane* base = nullptr;
     float exposure = 1.0F; ///< of the frame: what multiplies light before it is shown; lossy codecs spend bits by it
     std::optional<ByteFilter> filter{}; ///< for tests and benchmarks; otherwise the cheaper one
 };
@@ -40,10 +43,14 @@ std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const Stri
 /// Whether a strip that we encoded needs the reference.
 bool needs_reference(std::span<const std::byte> strip);
 
+/// Whether others may be predicted from a strip that we encoded: it is H.264 and stands alone.
+bool can_be_base(std::span<const std::byte> strip);
+
 /// What a receiver knows about the strips of a plane.
 struct Announced {
     CodecId codec = CodecId::kZstdFiltered; ///< strips may be of this kind, or lossless
     const Plane* reference = nullptr;       ///< of the same format and size; null: strips that need one are refused
+    std::span<const std::byte> base{};      ///< the strip of the same rows of the base view; empty: none
 };
 
 /// Decodes one strip into its rows of `plane`, whose format, size and `bytes` the caller has set. The strip must say

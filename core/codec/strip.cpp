@@ -9,7 +9,8 @@ namespace fieldcast::codec {
 namespace {
 
 constexpr std::uint8_t kStripVersion = 1;
-constexpr std::uint8_t kFoldedFlag = 1;
+constexpr std::uint8_t kFoldedFlag = 1;    ///< of ZSTD_FILTERED
+constexpr std::uint8_t kPredictedFlag = 1; ///< of H264
 
 void put_u16(std::byte* at, std::uint32_t value) {
     at[0] = static_cast<std::byte>(value);
@@ -26,17 +27,32 @@ std::optional<StripCoding> coding_from_number(std::uint8_t number) {
     case StripCoding::kRaw:
     case StripCoding::kZstdFiltered:
     case StripCoding::kJpeg:
+    case StripCoding::kH264:
     case StripCoding::kRepeat:
         return coding;
     }
     return std::nullopt;
 }
 
+std::uint8_t known_flags(StripCoding coding) {
+    switch (coding) {
+    case StripCoding::kZstdFiltered:
+        return kFoldedFlag;
+    case StripCoding::kH264:
+        return kPredictedFlag;
+    case StripCoding::kRaw:
+    case StripCoding::kJpeg:
+    case StripCoding::kRepeat:
+        break;
+    }
+    return 0;
+}
+
 Decoded<ByteFilter> read_filter(StripCoding coding, PlaneFormat format, std::span<const std::byte> strip) {
     const auto predictor = std::to_integer<std::uint8_t>(strip[3]);
     const auto layout = std::to_integer<std::uint8_t>(strip[4]);
     const auto flags = std::to_integer<std::uint8_t>(strip[5]);
-    if (flags > (coding == StripCoding::kZstdFiltered ? kFoldedFlag : 0)) {
+    if (flags > known_flags(coding)) {
         return decode_error("strip header: unknown flags");
     }
     if (coding != StripCoding::kZstdFiltered) {
@@ -69,6 +85,9 @@ void write_header(StripHeader header, std::vector<std::byte>& strip) {
     strip[3] = has_filter ? static_cast<std::byte>(header.filter.predictor) : std::byte{0};
     strip[4] = has_filter ? static_cast<std::byte>(header.filter.layout) : std::byte{0};
     strip[5] = has_filter && header.filter.is_folded ? std::byte{kFoldedFlag} : std::byte{0};
+    if (header.coding == StripCoding::kH264 && header.is_predicted) {
+        strip[5] = std::byte{kPredictedFlag};
+    }
     put_u16(&strip[6], header.width_px);
     put_u16(&strip[8], header.band.first_row);
     put_u16(&strip[10], header.band.row_count);
@@ -92,7 +111,12 @@ Decoded<StripHeader> read_header(std::span<const std::byte> strip) {
     if (!filter) {
         return tl::unexpected(filter.error());
     }
-    StripHeader header{*coding, format, *filter, get_u16(&strip[6]), {get_u16(&strip[8]), get_u16(&strip[10])}};
+    StripHeader header{.coding = *coding,
+                       .format = format,
+                       .filter = *filter,
+                       .is_predicted = *coding == StripCoding::kH264 && strip[5] == std::byte{kPredictedFlag},
+                       .width_px = get_u16(&strip[6]),
+                       .band = {get_u16(&strip[8]), get_u16(&strip[10])}};
     header.body_bytes = get_u16(&strip[12]) | get_u16(&strip[14]) << 16;
     if (header.body_bytes != strip.size() - kStripHeaderBytes) {
         return decode_error("strip header: says " + std::to_string(header.body_bytes) + " bytes follow, there are " +

@@ -16,6 +16,7 @@ enum class StripCoding : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< byte planes of prediction errors in a zstd frame
     kJpeg = 3,         ///< a JPEG file
+    kH264 = 4,         ///< an H.264 byte stream of one picture
     kRepeat = 5,       ///< no bytes: the pixels of the reference
 };
 
@@ -33,7 +34,8 @@ inline constexpr std::size_t kStripHeaderBytes = 16;
 struct StripHeader {
     StripCoding coding = StripCoding::kRaw;
     PlaneFormat format = PlaneFormat::kRgb8;
-    ByteFilter filter{}; ///< of kZstdFiltered
+    ByteFilter filter{};       ///< of kZstdFiltered
+    bool is_predicted = false; ///< of kH264: from the strip of the same rows of the base view
     std::uint32_t width_px = 0;
     RowBand band{};
     std::uint32_t body_bytes = 0;

@@ -5,12 +5,14 @@
 #include "core/base/log.h"
 #include "core/image/atomic_file.h"
 #include "core/image/image_header.h"
+#include "core/image/light_image_header.h"
 #include "core/image/webp.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 namespace fieldcast::image {
@@ -103,18 +105,34 @@ int first_rgb_channel(const OIIO::ImageSpec& spec, const std::string& name) {
     return red;
 }
 
-std::unique_ptr<OIIO::ImageInput> open_hdr(const std::string& name, const ImageLimits& limits) {
-    auto input = OIIO::ImageInput::open(name);
-    if (!input) {
-        throw UserError(name + ": " + OIIO::geterror());
+/// Which of our formats `file` is in. Its header was checked.
+LightFormat light_format(const std::filesystem::path& file, const ImageLimits& limits) {
+    std::ifstream stream(file, std::ios::binary);
+    std::error_code error;
+    const std::uintmax_t file_bytes = std::filesystem::file_size(file, error);
+    if (!stream || error) {
+        throw UserError(file.string() + ": cannot be read");
     }
-    const OIIO::ImageSpec& spec = input->spec();
-    const std::string format = input->format_name();
-    if ((format != "openexr" && format != "hdr") || spec.deep) {
-        throw UserError(name + ": expected a .hdr or .exr image");
+    std::string beginning(kLightHeaderBytes, '\0');
+    stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    beginning.resize(static_cast<std::size_t>(stream.gcount()));
+    const auto format = read_light_image_header(std::as_bytes(std::span(beginning)), file_bytes, limits.max_pixels);
+    return format ? *format : throw UserError(file.string() + ": " + format.error().message);
+}
+
+std::unique_ptr<OIIO::ImageInput> open_light_image(const std::string& name, const ImageLimits& limits) {
+    const char* const format = light_format(name, limits) == LightFormat::kOpenExr ? "openexr" : "hdr";
+    auto input = OIIO::ImageInput::create(format);
+    FC_ASSERT(input, "OpenImageIO reads this format");
+    input->threads(1);
+    OIIO::ImageSpec spec;
+    if (!input->open(name, spec)) {
+        throw UserError(name + ": " + input->geterror());
+    }
+    if (spec.width < 1 || spec.height < 1 || spec.deep) {
+        throw UserError(name + ": an image without size, or a deep one");
     }
     check_limits(static_cast<std::uint64_t>(spec.width), static_cast<std::uint64_t>(spec.height), name, limits);
-    input->threads(1);
     return input;
 }
 
@@ -167,7 +185,7 @@ Rgba8 decode_rgba8(std::span<const std::byte> bytes, const std::string& name, co
 
 RgbF32 read_rgb_f32(const std::filesystem::path& file, const ImageLimits& limits) {
     const std::string name = file.string();
-    const auto input = open_hdr(name, limits);
+    const auto input = open_light_image(name, limits);
     const OIIO::ImageSpec spec = input->spec();
     const bool is_grey = spec.nchannels == 1;
     const int first = is_grey ? 0 : first_rgb_channel(spec, name);

@@ -135,6 +135,9 @@ Decoded<std::string> check_relative_path(std::string_view path) {
             out.append(out.empty() ? 0 : 1, '/').append(segment);
         }
     }
+    if (has_scheme(out)) { // "./c:a": fine as a path, but not in its shortest form
+        return decode_error("URI with a scheme is not allowed");
+    }
     return out.empty() ? Decoded<std::string>(decode_error("path names no file")) : Decoded<std::string>(out);
 }
 

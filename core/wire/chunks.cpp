@@ -2,6 +2,7 @@
 #include "core/wire/chunks.h"
 
 #include "core/codec/crc32c.h"
+#include "core/wire/base_view.h"
 #include "core/wire/convert.h"
 
 #include "fieldcast/v1/light_field.pb.h"
@@ -129,13 +130,19 @@ WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const Chu
     to_proto(set, *message.mutable_views()->mutable_view_set());
     message.mutable_views()->set_codec(to_proto(format.encoding.codec));
     append_header(frame, std::move(message));
-    std::uint32_t part = 0;
+    std::vector<const EncodedView*> parts;
     for (const LatticePosition position : lattice_positions(grid)) {
         const auto view = views.views.find(position);
         FC_ASSERT(view != views.views.end(), "a view was asked for that was not encoded");
-        append_plane(frame, part, view->second.image, options);
+        parts.push_back(&view->second);
         frame.discards.push_back(view->second.discards);
-        ++part;
+    }
+    const std::uint32_t base = base_part(grid); // first: others may be predicted from it
+    append_plane(frame, base, parts[base]->image, options);
+    for (std::uint32_t part = 0; part < parts.size(); ++part) {
+        if (part != base) {
+            append_plane(frame, part, parts[part]->image, options);
+        }
     }
     return frame;
 }

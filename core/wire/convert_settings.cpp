@@ -293,7 +293,7 @@ constexpr bool same(auto ours, int theirs) {
 
 static_assert(same(codec::CodecId::kRaw, v1::CODEC_RAW) &&
               same(codec::CodecId::kZstdFiltered, v1::CODEC_ZSTD_FILTERED) &&
-              same(codec::CodecId::kJpeg, v1::CODEC_JPEG));
+              same(codec::CodecId::kJpeg, v1::CODEC_JPEG) && same(codec::CodecId::kH264, v1::CODEC_H264));
 static_assert(same(PlaneSemantic::kDiffuse, v1::PLANE_SEMANTIC_DIFFUSE) &&
               same(PlaneSemantic::kSpecular, v1::PLANE_SEMANTIC_SPECULAR) &&
               same(PlaneSemantic::kDepth, v1::PLANE_SEMANTIC_DEPTH) &&

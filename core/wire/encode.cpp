@@ -2,6 +2,7 @@
 #include "core/wire/encode.h"
 
 #include "core/codec/crc32c.h"
+#include "core/wire/base_view.h"
 
 #include <algorithm>
 #include <set>
@@ -23,6 +24,8 @@ struct Job {
     bool is_reference_optional = false;
     float exposure = 1.0F;
     EncodedPlane* encoded = nullptr;
+    const Plane* base = nullptr; ///< the image of the base view; null: none, or the codec does not predict
+    const EncodedPlane* encoded_base = nullptr;
 };
 
 StripBytes share(std::vector<std::byte> bytes) {
@@ -30,9 +33,20 @@ StripBytes share(std::vector<std::byte> bytes) {
     return {std::make_shared<const std::vector<std::byte>>(std::move(bytes)), crc32c};
 }
 
+/// What a strip may be predicted from: not from rows that some client gets in another form.
+const Plane* base_of(const Job& job, codec::RowBand band) {
+    if (job.base == nullptr) {
+        return nullptr;
+    }
+    const auto found = std::ranges::find(job.encoded_base->strips, band, &EncodedStrip::band);
+    const bool is_good = found != job.encoded_base->strips.end() && codec::can_be_base(*found->best.bytes);
+    return is_good ? job.base : nullptr;
+}
+
 void encode_strip(const Job& job, EncodedStrip& strip) {
     codec::StripOptions options{
         .encoding = job.encoded->encoding, .reference = job.reference, .exposure = job.exposure};
+    options.base = base_of(job, strip.band);
     strip.best = share(codec::encode_strip(*job.plane, strip.band, options));
     if (!codec::needs_reference(*strip.best.bytes)) {
         strip.alone = strip.best;
@@ -74,6 +88,25 @@ const Plane* find_view(const Views* views, LatticePosition position) {
     }
     const auto found = std::ranges::find(views->views, position, &View::position);
     return found == views->views.end() ? nullptr : &found->image;
+}
+
+/// Encodes views that others are predicted from, then the others. `jobs` are in the order of `views`.
+void encode_predicted(const Views& views, EncodedViews& encoded, std::vector<Job> jobs, WorkerPool& pool) {
+    std::vector<Job> bases;
+    std::vector<Job> others;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        const LatticePosition position = views.views[i].position;
+        const LatticePosition base = base_position(position);
+        if (position == base) {
+            bases.push_back(jobs[i]);
+            continue;
+        }
+        jobs[i].base = find_view(&views, base);
+        jobs[i].encoded_base = jobs[i].base != nullptr ? &encoded.views.at(base).image : nullptr;
+        others.push_back(jobs[i]);
+    }
+    encode_all(bases, pool);
+    encode_all(others, pool);
 }
 
 } // namespace
@@ -135,7 +168,11 @@ EncodedViews encode_views(const Views& views, const ViewFormat& format, const Ke
         jobs.push_back({&view.image, fitting(find_view(key.views, view.position), view.image), key.is_optional,
                         views.header.settings.exposure, &entry->second.image});
     }
-    encode_all(jobs, pool);
+    if (format.encoding.codec == codec::CodecId::kH264) {
+        encode_predicted(views, encoded, jobs, pool);
+    } else {
+        encode_all(jobs, pool);
+    }
     encoded.encode_time = Clock::now() - begin;
     return encoded;
 }

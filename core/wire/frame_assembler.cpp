@@ -2,6 +2,7 @@
 #include "core/wire/frame_assembler.h"
 
 #include "core/codec/crc32c.h"
+#include "core/wire/base_view.h"
 #include "core/wire/convert.h"
 #include "core/wire/frame_parts.h"
 
@@ -44,6 +45,8 @@ struct FrameAssembler::Frame {
     std::uint32_t next_index = 1;
     std::optional<Strip> open;    ///< strip of which slices are missing
     std::vector<Strip> undecoded; ///< complete strips
+    std::optional<std::uint32_t> base_part; ///< that others may be predicted from
+    BaseStrips base_strips;
     std::uint32_t crc32c = 0;
     std::uint64_t payload_bytes = 0;
     std::chrono::nanoseconds decode_time{0};
@@ -83,6 +86,9 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
         return tl::unexpected(parts.error());
     }
     frame->parts = std::move(*parts);
+    if (frame->set && frame->parts.front().codec == codec::CodecId::kH264) {
+        frame->base_part = wire::base_part(frame->set->grid);
+    }
     return frame;
 }
 
@@ -140,6 +146,9 @@ Decoded<void> FrameAssembler::Frame::add_slice(v1::FrameChunk& chunk) {
     if (open->received == open->size) {
         parts[open->part].next_row += open->band.row_count;
         if (decoding == Decoding::kFull) {
+            if (open->part == base_part) {
+                base_strips.keep(open->band, as_bytes(open->bytes));
+            }
             undecoded.push_back(std::move(*open));
         }
         open.reset();
@@ -181,7 +190,7 @@ Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
         const Strip& strip = undecoded[i];
         Part& part = parts[strip.part];
         const Plane* reference = key_planes != nullptr ? &(*key_planes)[strip.part] : nullptr;
-        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, {part.codec, reference}, part.plane);
+        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, {part.codec, reference, base_strips.find(strip.band)}, part.plane);
     };
     if (pool != nullptr) {
         pool->for_each(undecoded.size(), decode_one);

@@ -58,7 +58,8 @@ struct ReceivedFrame {
 
 /// Puts the chunks of one stream together, in the order in which they arrive, and decodes strips as they complete.
 /// Not thread-safe. Hostile input gives DecodeErrors, never a crash or more memory than the limits allow
-/// (decoded frame + planes of the last key frame + one encoded strip per pool thread + scratch of decode_strip).
+/// (decoded frame + planes of the last key frame + one encoded strip per pool thread + one encoded view + scratch of
+/// decode_strip).
 ///
 ///     assembler.begin_epoch(configured.epoch(), limits);
 ///     auto added = assembler.add(std::move(*message.mutable_frame_chunk()));

@@ -62,6 +62,7 @@ CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& c
     server_info_.add_codecs(v1::CODEC_ZSTD_FILTERED);
     server_info_.add_codecs(v1::CODEC_RAW);
     server_info_.add_codecs(v1::CODEC_JPEG);
+    server_info_.add_codecs(v1::CODEC_H264);
     *server_info_.mutable_limits() = limits_message(channels, limits);
     for (const auto& channel : channels) {
         *channel_list_.add_channels() = channel_message(channel->info());

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/wire/protobuf_log.h"
 #include "server/access/listening_rule.h"
 #include "server/service/catalog_service.h"
 #include "server/service/credentials.h"
@@ -151,6 +152,7 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
                        const session::Limits& limits, const access::Security& security,
                        std::shared_ptr<metrics::Registry> registry) {
     log_transport();
+    wire::take_protobuf_log();
     check_protection(address, security);
     state_ = std::make_unique<State>(channels, limits, security, std::move(registry));
     grpc::EnableDefaultHealthCheckService(true);

@@ -69,6 +69,9 @@ TEST(Options, CodecsKeepTheirOrder) {
     EXPECT_THAT(invocation.options->play.wish.codecs,
                 testing::ElementsAre(codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered));
     EXPECT_EQ(invocation.options->play.wish.quality, 40);
+    const Invocation video = read({"--codec", "h264,jpeg"});
+    ASSERT_TRUE(video.options) << video.text;
+    EXPECT_THAT(video.options->play.wish.codecs, testing::ElementsAre(codec::CodecId::kH264, codec::CodecId::kJpeg));
 }
 
 TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {

@@ -143,6 +143,22 @@ TEST_F(Negotiate, ChoosesPlanesAndCodecs) {
     EXPECT_EQ(planes[2].encoding.codec, codec::CodecId::kRaw);
 }
 
+TEST_F(Negotiate, GivesH264ToViewsAndNotToLight) {
+    for (const auto semantic : {v1::PLANE_SEMANTIC_COLOUR, v1::PLANE_SEMANTIC_DIFFUSE}) {
+        v1::CodecPreference& preference = *wanted_.add_codecs();
+        preference.set_semantic(semantic);
+        preference.add_codecs(v1::CODEC_H264);
+        preference.add_codecs(v1::CODEC_JPEG);
+    }
+    EXPECT_EQ(std::get<feed::ViewsWish>(ask()->wish).format.encoding, (codec::Encoding{codec::CodecId::kH264, 75}));
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[0].encoding,
+              (codec::Encoding{codec::CodecId::kJpeg, 75}));
+    wanted_.clear_codecs();
+    wanted_.clear_modes();
+    EXPECT_EQ(std::get<feed::ViewsWish>(ask()->wish).format.encoding, codec::Encoding{}) << "only who asks gets it";
+}
+
 TEST_F(Negotiate, ChoosesTheFirstCodecThatFitsThePlane) {
     const auto prefer = [this](v1::PlaneSemantic semantic, std::uint32_t quality) {
         v1::CodecPreference& preference = *wanted_.add_codecs();

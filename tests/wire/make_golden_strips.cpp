@@ -39,6 +39,16 @@ void write_valid(const std::filesystem::path& folder) {
     }
     const Plane picture = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
     write(folder / "rgb8_jpeg.strip", codec::encode_strip(picture, {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
+    Plane soft = testing::empty_plane(PlaneFormat::kRgb8, 33, 20); // as in h264_strip_test.cpp
+    Plane moved = soft;
+    for (std::size_t i = 0; i < soft.bytes.size(); ++i) {
+        const auto pixel = static_cast<std::uint32_t>(i / 3);
+        soft.bytes[i] = static_cast<std::byte>(4 * (pixel % 33) + 3 * (pixel / 33));
+        moved.bytes[i] = static_cast<std::byte>(4 * (pixel % 33 + 2) + 3 * (pixel / 33));
+    }
+    write(folder / "rgb8_h264.strip", codec::encode_strip(soft, {3, 15}, {.encoding = {CodecId::kH264, 75}}));
+    write(folder / "rgb8_h264_predicted.strip",
+          codec::encode_strip(moved, {3, 15}, {.encoding = {CodecId::kH264, 75}, .base = &soft}));
     write(folder / "r11g11b10f_jpeg.strip",
           codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
 }

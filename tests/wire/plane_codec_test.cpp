@@ -231,6 +231,7 @@ TEST(PlaneCodec, KnowsItsNumbers) {
     EXPECT_EQ(codec_from_number(1), CodecId::kRaw);
     EXPECT_EQ(codec_from_number(2), CodecId::kZstdFiltered);
     EXPECT_EQ(codec_from_number(3), CodecId::kJpeg);
+    EXPECT_EQ(codec_from_number(4), CodecId::kH264);
     for (const std::uint64_t number : {0ULL, 5ULL, 255ULL, 257ULL, 1ULL << 40}) {
         EXPECT_FALSE(codec_from_number(number)) << number;
     }

@@ -232,5 +232,44 @@ TEST(ReadRgbF32, RefusesOtherFiles) {
     EXPECT_THROW(read_rgb_f32(folder.path() / "noise.exr", kNoLimits), UserError);
 }
 
+/// An EXR file of 3 × 2 pixels with `value` written `at` bytes behind the first `name` in it.
+void write_changed_exr(const std::filesystem::path& file, const std::string& name, std::size_t at, std::uint32_t value) {
+    write_exr(file, RgbF32{3, 2, std::vector<glm::vec3>(6)});
+    std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    const std::size_t found = bytes.find(name);
+    ASSERT_NE(found, std::string::npos);
+    stream.seekp(static_cast<std::streamoff>(found + name.size() + at));
+    stream.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+TEST(ReadRgbF32, RefusesHeadersThatClaimMoreThanThereIs) {
+    const test::TestFolder folder;
+    const auto file = folder.path() / "sky.exr";
+    const auto refusal = [&](const std::string& name, std::size_t at, std::uint32_t value) -> std::string {
+        write_changed_exr(file, name, at, value);
+        try {
+            read_rgb_f32(file, kNoLimits);
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    const std::string window("dataWindow\0box2i\0", 17);
+    const std::string channels("channels\0chlist\0", 16);
+    EXPECT_EQ(refusal(window, 4, 0), "nothing"); // its first corner is (0, 0) anyway
+    EXPECT_THAT(refusal(channels, 0, 0x20000000), HasSubstr("larger than the header may be")); // 512 MiB
+    EXPECT_THAT(refusal(window, 12, 0x7FFFFFFF), HasSubstr("pixels are accepted"));            // right edge
+    EXPECT_THAT(refusal(window, 4, 0x80000000), HasSubstr("pixels are accepted"));             // left edge
+    EXPECT_THAT(refusal(window, 12, 0xFFFFFFFF), HasSubstr("image of 0x2 pixels"));            // empty
+    EXPECT_THAT(refusal(window, 16, 20'000'000), HasSubstr("in so small a file"));             // bottom edge
+}
+
+TEST(ReadRgbF32, LooksAtTheContentNotAtTheName) {
+    const test::TestFolder folder;
+    write_exr(folder.path() / "sky.hdr", RgbF32{1, 1, {glm::vec3(0.5F)}});
+    EXPECT_EQ(read_rgb_f32(folder.path() / "sky.hdr", kNoLimits).pixels[0], glm::vec3(0.5F));
+}
+
 } // namespace
 } // namespace fieldcast::image

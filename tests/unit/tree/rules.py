@@ -26,6 +26,7 @@ LIBRARIES = {
     "vulkan/": ("core/gpu",),
     "zstd": ("core/codec",),
     "jpeglib": ("core/codec",),
+    "wels/": ("core/codec",),
     "OpenImageIO/": ("core/image",),
     "webp/": ("core/image",),
     "zlib": ("core/image",),
