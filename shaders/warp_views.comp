@@ -8,7 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { WarpViewsParams params; };
 
-// What the residual layer shows must be nearer by that much than what the source shows.
+// What the residual layer shows in front of what the source shows must be nearer by that much.
 const float kNearer = 1.02;
 
 void count(uint view, uint what) {
@@ -27,11 +27,12 @@ void main() {
         return;
     }
     vec2 pixel = vec2(id.xy) + 0.5;
-    WarpHit best = WarpHit(false, vec2(0.0), 0.0);
+    WarpHit best = WarpHit(false, false, vec2(0.0), 0.0);
     uint shown = 0u;
     for (uint i = 0u; i < params.image_count; ++i) {
         WarpHit hit = search_image(params.images.at[i], params.paths.at[id.z * params.image_count + i], pixel);
-        if (hit.is_found && (!best.is_found || hit.inverse_depth > best.inverse_depth * kNearer)) {
+        bool is_in_front = !hit.is_edge && hit.inverse_depth > best.inverse_depth * kNearer;
+        if (hit.is_found && (!best.is_found || is_in_front)) {
             best = hit;
             shown = i;
         }

@@ -15,6 +15,7 @@ layout(set = 0, binding = kWarpCoarse) uniform samplerBuffer warp_coarse_;
 
 struct WarpHit {
     bool is_found;
+    bool is_edge;        // only within half a texel of an edge
     vec2 at;             // position in the image
     float inverse_depth;
 };
@@ -110,14 +111,14 @@ WarpHit meet(WarpLine line, WarpSample a, int k_a, WarpSample b, int k_b) {
         float span = b.gap - a.gap;
         float t = span > 0.0 ? -a.gap / span : 0.0;
         bool is_found = a.gap <= 0.0 && b.gap >= 0.0;
-        return WarpHit(is_found, line_position(line, mix(float(k_a), float(k_b), t) + 0.5),
+        return WarpHit(is_found, false, line_position(line, mix(float(k_a), float(k_b), t) + 0.5),
                        mix(a.inverse_depth, b.inverse_depth, t));
     }
     bool meets_a = has_a && a.gap <= 0.0 && a.gap >= -0.5;
     bool meets_b = has_b && b.gap >= 0.0 && b.gap <= 0.5;
     bool is_a = meets_a && (!meets_b || a.inverse_depth >= b.inverse_depth);
     float along = is_a ? float(k_a) + 0.5 + line.side * a.gap : float(k_b) + 0.5 + line.side * b.gap;
-    return WarpHit(meets_a || meets_b, line_position(line, along), is_a ? a.inverse_depth : b.inverse_depth);
+    return WarpHit(meets_a || meets_b, true, line_position(line, along), is_a ? a.inverse_depth : b.inverse_depth);
 }
 
 WarpHit search_image(WarpImage image, WarpPath path, vec2 pixel) {
