@@ -155,8 +155,39 @@ WarpHit search_image(WarpImage image, WarpPath path, vec2 pixel) {
     return meet(line, before, k - step, WarpSample(-1.0, 0.0, ivec2(0), 0u), k);
 }
 
+// E. Catmull, R. Rom. A class of local interpolating splines. 1974: weights of four values, `f` beyond the second.
+vec4 catmull_rom(float f) {
+    float f2 = f * f;
+    float f3 = f2 * f;
+    return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);
+}
+
+// Sharper than a bilinear colour; `is_smooth` false: the 4×4 texels around do not all show one surface.
+vec3 sharp_colour(WarpImage image, ivec2 corner, vec2 f, out bool is_smooth) {
+    ivec2 first = corner - 1;
+    is_smooth = all(greaterThanEqual(first, ivec2(0))) && all(lessThan(first + 3, ivec2(image.width, image.height)));
+    vec4 across = catmull_rom(f.x);
+    vec4 down = catmull_rom(f.y);
+    vec3 sum = vec3(0.0);
+    for (int y = 0; is_smooth && y < 4; ++y) {
+        vec3 row = vec3(0.0);
+        for (int x = 0; x < 4; ++x) {
+            uint word = fetch_texel(image, first + ivec2(x, y)).y;
+            is_smooth = is_smooth && (x == 3 || (word & kLinkRight) != 0u) && (x != 1 || y == 3 || (word & kLinkBelow) != 0u);
+            row += across[x] * texel_colour(word);
+        }
+        sum += down[y] * row;
+    }
+    return sum;
+}
+
 // Colour at a hit, from the texels around that show the same surface.
 vec3 colour_at(WarpImage image, vec2 p) {
+    bool is_smooth;
+    vec3 sharp = sharp_colour(image, ivec2(floor(p - 0.5)), fract(p - 0.5), is_smooth);
+    if (is_smooth) {
+        return sharp;
+    }
     ivec2 extent = ivec2(image.width, image.height);
     ivec2 nearest = clamp(ivec2(floor(p)), ivec2(0), extent - 1);
     uint word = fetch_texel(image, nearest).y;
