@@ -30,8 +30,9 @@ void main() {
     WarpHit best = WarpHit(false, false, vec2(0.0), 0.0);
     uint shown = 0u;
     for (uint i = 0u; i < params.image_count; ++i) {
-        WarpHit hit = search_image(params.images.at[i], params.paths.at[id.z * params.image_count + i], pixel);
-        bool is_in_front = !hit.is_edge && hit.inverse_depth > best.inverse_depth * kNearer;
+        float least = best.is_found ? best.inverse_depth * kNearer : 0.0;
+        WarpHit hit = search_image(params.images.at[i], params.paths.at[id.z * params.image_count + i], pixel, least);
+        bool is_in_front = !hit.is_edge && hit.inverse_depth > least;
         if (hit.is_found && (!best.is_found || is_in_front)) {
             best = hit;
             shown = i;

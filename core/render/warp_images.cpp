@@ -65,12 +65,39 @@ Decoded<Planes> find_planes(const SourceFrame& frame) {
     return planes;
 }
 
-/// Least and most inverse depth of a plane, 1/m.
-glm::vec2 depth_range(const Plane& inverse_depth, float unit) {
+std::vector<std::uint16_t> steps_of(const Plane& inverse_depth) {
     std::vector<std::uint16_t> steps(inverse_depth.bytes.size() / 2);
     std::memcpy(steps.data(), inverse_depth.bytes.data(), steps.size() * 2);
-    const auto [least, most] = std::ranges::minmax_element(steps);
-    return glm::vec2(*least, *most) * unit;
+    return steps;
+}
+
+/// Least and most inverse depth, in steps; the first is larger if there is none.
+using StepRange = std::pair<std::uint16_t, std::uint16_t>;
+constexpr StepRange kNoSteps{0xFFFF, 0};
+
+void widen(StepRange& range, std::span<const std::uint16_t> steps) {
+    for (const std::uint16_t step : steps) {
+        range = {std::min(range.first, step), std::max(range.second, step)};
+    }
+}
+
+/// Of every image: the source, then the views of the residual layer.
+std::vector<StepRange> depth_ranges(const SourceFrame& frame, const ResidualLayer& residual) {
+    std::vector<StepRange> ranges(1 + residual.positions.size(), kNoSteps);
+    widen(ranges[0], steps_of(*frame.find(PlaneSemantic::kInverseDepth)));
+    if (residual.tiles.empty()) {
+        return ranges;
+    }
+    const std::vector<std::uint16_t> steps = steps_of(*frame.find(PlaneSemantic::kResidualInverseDepth));
+    const glm::uvec2 tiles = residual_tiles(frame.header.source.width_px, frame.header.source.height_px);
+    for (std::size_t slot = 0; slot < residual.tiles.size(); ++slot) {
+        const std::size_t corner = (slot / kResidualColumns * kResidualColumns * kResidualTile + slot % kResidualColumns) * kResidualTile;
+        for (std::uint32_t row = 0; row < kResidualTile; ++row) {
+            widen(ranges[1 + residual.tiles[slot] / (tiles.x * tiles.y)],
+                  std::span(steps).subspan(corner + std::size_t{row} * kResidualColumns * kResidualTile, kResidualTile));
+        }
+    }
+    return ranges;
 }
 
 std::uint32_t blocks_of(const shared::WarpImage& image, std::uint32_t side) {
@@ -119,19 +146,18 @@ WarpImages::Room WarpImages::place_images(const SourceFrame& frame) {
     for (const LatticePosition position : header_.residual.positions) {
         cameras_.push_back(moved_camera(header_.source, header_.residual.geometry, position));
     }
+    const std::vector<StepRange> ranges = depth_ranges(frame, header_.residual);
     images_.clear();
     Room room;
     for (const Camera& camera : cameras_) {
-        const bool is_source = images_.empty();
-        const auto semantic = is_source ? PlaneSemantic::kInverseDepth : PlaneSemantic::kResidualInverseDepth;
-        const glm::vec2 range = depth_range(*frame.find(semantic), header_.inverse_depth_unit);
+        const StepRange range = ranges[images_.size()];
         const shared::WarpImage image{.first_texel = room.texels,
                                       .width = camera.width_px,
                                       .height = camera.height_px,
                                       .first_block = room.blocks,
                                       .first_coarse = room.coarse,
-                                      .least = range.x,
-                                      .most = range.y};
+                                      .least = range.first * header_.inverse_depth_unit,
+                                      .most = range.second * header_.inverse_depth_unit};
         room.texels += image.width * image.height;
         room.blocks += blocks_of(image, shared::kWarpBlock);
         room.coarse += blocks_of(image, shared::kWarpCoarseBlock);

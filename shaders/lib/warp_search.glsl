@@ -121,11 +121,15 @@ WarpHit meet(WarpLine line, WarpSample a, int k_a, WarpSample b, int k_b) {
     return WarpHit(meets_a || meets_b, true, line_position(line, along), is_a ? a.inverse_depth : b.inverse_depth);
 }
 
-WarpHit search_image(WarpImage image, WarpPath path, vec2 pixel) {
+// Surfaces farther than inverse depth `least` are of no interest.
+WarpHit search_image(WarpImage image, WarpPath path, vec2 pixel, float least) {
+    if (image.most < least) {
+        return WarpHit(false, false, vec2(0.0), 0.0);
+    }
     WarpLine line = make_line(path, pixel);
     int step = line.side > 0.0 ? -1 : 1;
     float near = line.origin[line.axis] + line.side * line.parallax * image.most - 0.5;
-    float far = line.origin[line.axis] + line.side * line.parallax * image.least - 0.5;
+    float far = line.origin[line.axis] + line.side * line.parallax * max(image.least, least) - 0.5;
     int last = int(line.axis == 0 ? image.width : image.height) - 1;
     int k = clamp((step < 0 ? int(ceil(near)) : int(floor(near))) - step, 0, last);
     int end = clamp((step < 0 ? int(floor(far)) : int(ceil(far))) + step, 0, last) + step;
