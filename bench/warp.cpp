@@ -27,7 +27,8 @@ void print_table(const nlohmann::ordered_json& json) {
     std::cout << "source with guard band " << json["source_size"].get<std::string>() << ", " << json["tiles"]
               << " residual tiles, " << json["view_count"] << " views made; bytes of planes, lossless: "
               << json["plane_bytes"] << '\n'
-              << "mode               coding        bytes    SSIM  worst SSIM    RMSE  residual %  extended %  ms/view\n";
+              << "mode               coding        bytes    SSIM  worst SSIM    RMSE  residual %  extended %"
+                 "  ms/view\n";
     for (const nlohmann::ordered_json& row : json["rows"]) {
         const auto text = [&](const char* key, int digits) {
             return number_text(row.contains(key) ? row[key] : nlohmann::ordered_json(), digits);
@@ -92,7 +93,7 @@ void add_warp_command(CLI::App& app) {
     command->add_option("--grid", options->grid, "ROWSxCOLUMNS; its corners and inner views are made")
         ->capture_default_str();
     command->add_option("--size", options->size, "size of source and views")->capture_default_str();
-    command->add_option("--frames", options->settings.frames, "frames rendered, from a cold start; the last is measured")
+    command->add_option("--frames", options->settings.frames, "frames from a cold start; the last is measured")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command->add_option("--qualities", options->settings.qualities, "of lossy codecs, 1 to 100")

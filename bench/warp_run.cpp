@@ -18,8 +18,8 @@ std::vector<LatticePosition> chosen_positions(const ViewGrid& grid) {
     std::vector<LatticePosition> positions = render::residual_positions(grid);
     const std::uint32_t bottom = grid.rows - 1;
     const std::uint32_t right = grid.cols - 1;
-    for (const auto& [row, col] : {std::pair(bottom / 2, right), std::pair(bottom, right / 2), std::pair(bottom / 4, right / 4),
-                                   std::pair(3 * bottom / 4, 3 * right / 4)}) {
+    for (const auto& [row, col] : {std::pair(bottom / 2, right), std::pair(bottom, right / 2),
+                                   std::pair(bottom / 4, right / 4), std::pair(3 * bottom / 4, 3 * right / 4)}) {
         const LatticePosition position = lattice_position(grid, row, col);
         if (std::ranges::find(positions, position) == positions.end()) {
             positions.push_back(position);
@@ -135,7 +135,8 @@ void WarpRun::measure_scene(const SourceFrame& frame) {
     for (const PlaneSemantic semantic : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {
         bytes += code_plane(*frame.find(semantic), kLossless, nullptr, frame.header.settings.exposure).bytes;
     }
-    result_["rows"].push_back({{"mode", "scene"}, {"coding", kLossless.name}, {"bytes", bytes}, {"ssim", 1.0}, {"rmse", 0.0}});
+    result_["rows"].push_back(
+        {{"mode", "scene"}, {"coding", kLossless.name}, {"bytes", bytes}, {"ssim", 1.0}, {"rmse", 0.0}});
 }
 
 void WarpRun::measure_warp(const SourceFrame& frame, const Views& finished, const Coding& coding) {
@@ -143,8 +144,9 @@ void WarpRun::measure_warp(const SourceFrame& frame, const Views& finished, cons
     SourceFrame decoded{frame.header, {}};
     double bytes = tile_list_bytes(frame.header.residual.tiles);
     for (const Plane& plane : frame.planes) {
-        const bool is_sent = plane.semantic == PlaneSemantic::kColour || plane.semantic == PlaneSemantic::kInverseDepth ||
-                             (has_residual && is_residual(plane.semantic));
+        const bool is_of_source =
+            plane.semantic == PlaneSemantic::kColour || plane.semantic == PlaneSemantic::kInverseDepth;
+        const bool is_sent = is_of_source || (has_residual && is_residual(plane.semantic));
         if (is_sent) {
             const bool fits = codec::fits(coding.encoding.codec, plane.format);
             CodedPlane coded = code_plane(plane, fits ? coding : kLossless, nullptr, 1.0F);

@@ -12,7 +12,8 @@ std::vector<std::uint32_t> choose_tiles(const std::vector<bool>& mask, glm::uvec
     std::vector<std::uint32_t> holes(std::size_t{tiles.x} * tiles.y);
     for (std::uint32_t y = 0; y < size_px.y; ++y) {
         for (std::uint32_t x = 0; x < size_px.x; ++x) {
-            holes[std::size_t{y / kResidualTile} * tiles.x + x / kResidualTile] += mask[std::size_t{y} * size_px.x + x] ? 1 : 0;
+            const bool is_hole = mask[std::size_t{y} * size_px.x + x];
+            holes[std::size_t{y / kResidualTile} * tiles.x + x / kResidualTile] += is_hole ? 1 : 0;
         }
     }
     std::vector<std::uint32_t> chosen;
@@ -42,9 +43,9 @@ void TilePlane::append(const Plane& view, std::span<const std::uint32_t> tiles) 
             const glm::uvec2 from = glm::min(glm::uvec2(tile % columns, tile / columns) * kResidualTile + inside,
                                              glm::uvec2(view.width_px, view.height_px) - 1U);
             const glm::uvec2 to = glm::uvec2(slot % kResidualColumns, slot / kResidualColumns) * kResidualTile + inside;
-            const auto source = view.bytes.begin() + std::ptrdiff_t{pixel_bytes} * (std::ptrdiff_t{from.y} * view.width_px + from.x);
-            std::copy_n(source, pixel_bytes,
-                        plane_.bytes.begin() + std::ptrdiff_t{pixel_bytes} * (std::ptrdiff_t{to.y} * plane_.width_px + to.x));
+            const std::size_t source = pixel_bytes * (std::size_t{from.y} * view.width_px + from.x);
+            const std::size_t target = pixel_bytes * (std::size_t{to.y} * plane_.width_px + to.x);
+            std::copy_n(&view.bytes[source], pixel_bytes, &plane_.bytes[target]);
         }
     }
 }

@@ -17,7 +17,8 @@ Decoded<const Plane*> find_plane(const SourceFrame& frame, PlaneSemantic semanti
     if (plane == nullptr) {
         return decode_error(std::string("frame without plane ") + name);
     }
-    const bool fits = plane->format == source_format(semantic) && plane->width_px == plane_width(frame.header, semantic) &&
+    const bool fits = plane->format == source_format(semantic) &&
+                      plane->width_px == plane_width(frame.header, semantic) &&
                       plane->height_px == plane_height(frame.header, semantic) &&
                       plane->bytes.size() == plane_bytes(plane->format, plane->width_px, plane->height_px);
     return fits ? Decoded<const Plane*>(plane)
@@ -91,10 +92,12 @@ std::vector<StepRange> depth_ranges(const SourceFrame& frame, const ResidualLaye
     const std::vector<std::uint16_t> steps = steps_of(*frame.find(PlaneSemantic::kResidualInverseDepth));
     const glm::uvec2 tiles = residual_tiles(frame.header.source.width_px, frame.header.source.height_px);
     for (std::size_t slot = 0; slot < residual.tiles.size(); ++slot) {
-        const std::size_t corner = (slot / kResidualColumns * kResidualColumns * kResidualTile + slot % kResidualColumns) * kResidualTile;
+        constexpr std::size_t kWidth = kResidualColumns * kResidualTile;
+        const std::size_t corner =
+            slot / kResidualColumns * kResidualTile * kWidth + slot % kResidualColumns * kResidualTile;
         for (std::uint32_t row = 0; row < kResidualTile; ++row) {
             widen(ranges[1 + residual.tiles[slot] / (tiles.x * tiles.y)],
-                  std::span(steps).subspan(corner + std::size_t{row} * kResidualColumns * kResidualTile, kResidualTile));
+                  std::span(steps).subspan(corner + row * kWidth, kResidualTile));
         }
     }
     return ranges;
@@ -227,8 +230,8 @@ void WarpImages::record_bounds() {
     }
 }
 
-// Cameras have the same orientation: with o the target's place in the source's plane, a point at X of the target's space
-// is at X + o of the source's.
+// Cameras have the same orientation: with o the target's place in the source's plane, a point at X of the target's
+// space is at X + o of the source's.
 shared::WarpPath WarpImages::path(std::size_t index, const Camera& target) const {
     const Camera& image = cameras_[index];
     const glm::vec3 moved(target.world_from_camera[3] - image.world_from_camera[3]);

@@ -39,7 +39,8 @@ std::vector<LatticePosition> residual_positions(const ViewGrid& grid) {
     const std::uint32_t bottom = grid.rows - 1;
     const std::uint32_t right = grid.cols - 1;
     std::vector<LatticePosition> positions;
-    for (const auto& [row, col] : {std::pair(0U, 0U), std::pair(bottom, right), std::pair(0U, right), std::pair(bottom, 0U)}) {
+    for (const auto& [row, col] :
+         {std::pair(0U, 0U), std::pair(bottom, right), std::pair(0U, right), std::pair(bottom, 0U)}) {
         const LatticePosition position = lattice_position(grid, row, col);
         if (position != LatticePosition{} && std::ranges::find(positions, position) == positions.end()) {
             positions.push_back(position);
@@ -116,9 +117,9 @@ WarpPlanesRenderer::Corners WarpPlanesRenderer::render_corners(const SourcePlane
     corner_planes_.resize(header);
     surfaces_.render(corner_planes_);
     const std::uint32_t count = corner_planes_.pixel_count();
+    const gpu::Buffer& depth = corner_planes_.plane(PlaneSemantic::kDepth);
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        corners.depth_m.push_back(gpu::read_buffer_as<float>(device_, corner_planes_.plane(PlaneSemantic::kDepth), count,
-                                                             std::uint64_t{4} * count * i));
+        corners.depth_m.push_back(gpu::read_buffer_as<float>(device_, depth, count, std::uint64_t{4} * count * i));
     }
     return corners;
 }

@@ -83,7 +83,8 @@ void WarpRenderer::State::record() {
 }
 
 Views WarpRenderer::State::download(const FrameHeader& header) {
-    const auto values = gpu::read_buffer_as<std::uint32_t>(device, counters, request.positions.size() * shared::kWarpCounters);
+    const std::size_t count = request.positions.size() * shared::kWarpCounters;
+    const auto values = gpu::read_buffer_as<std::uint32_t>(device, counters, count);
     Views result{header, {}};
     counts.clear();
     for (std::size_t i = 0; i < request.positions.size(); ++i) {

@@ -68,7 +68,8 @@ WarpSample sample_line(WarpImage image, WarpLine line, int k) {
     float offset = p[across] - float(nearest[across]) - 0.5; // −0.5 to 0.5 beside the nearest texel
     ivec2 other = nearest;
     other[across] += offset < 0.0 ? -1 : 1;
-    bool has_other = abs(offset) > 0.01 && other[across] >= 0 && other[across] < int(across == 0 ? image.width : image.height);
+    int extent = int(across == 0 ? image.width : image.height);
+    bool has_other = abs(offset) > 0.01 && other[across] >= 0 && other[across] < extent;
     if (has_other && depth >= 0.0) {
         uvec2 beside = fetch_texel(image, other);
         if (is_linked(nearest, texel.y, other, beside.y)) {
@@ -177,7 +178,9 @@ vec3 sharp_colour(WarpImage image, ivec2 corner, vec2 f, out bool is_smooth) {
         vec3 row = vec3(0.0);
         for (int x = 0; x < 4; ++x) {
             uint word = fetch_texel(image, first + ivec2(x, y)).y;
-            is_smooth = is_smooth && (x == 3 || (word & kLinkRight) != 0u) && (x != 1 || y == 3 || (word & kLinkBelow) != 0u);
+            bool is_linked_right = x == 3 || (word & kLinkRight) != 0u;
+            bool is_linked_below = x != 1 || y == 3 || (word & kLinkBelow) != 0u;
+            is_smooth = is_smooth && is_linked_right && is_linked_below;
             row += across[x] * texel_colour(word);
         }
         sum += down[y] * row;

@@ -129,8 +129,9 @@ protected:
         const Seen truth = look(camera_of(view.position), x, y);
         float error = 0.0F;
         for (int c = 0; c < 3; ++c) {
-            const auto byte = std::to_integer<int>(view.image.bytes[3 * (std::size_t{y} * kWidth + x) + static_cast<std::size_t>(c)]);
-            error = std::max(error, std::abs(static_cast<float>(byte) - truth.colour[c]));
+            const std::size_t at = 3 * (std::size_t{y} * kWidth + x) + static_cast<std::size_t>(c);
+            const auto value = static_cast<float>(std::to_integer<int>(view.image.bytes[at]));
+            error = std::max(error, std::abs(value - truth.colour[c]));
         }
         return error;
     }
@@ -151,7 +152,8 @@ protected:
         const Camera source = widened_source(header(), 0);
         const Seen seen = look(camera, x, y);
         const glm::vec3 at = project(source, unproject(camera, glm::vec2(x, y) + 0.5F, seen.depth_m));
-        for (const glm::vec2 step : {glm::vec2(0), glm::vec2(2, 0), glm::vec2(-2, 0), glm::vec2(0, 2), glm::vec2(0, -2)}) {
+        for (const glm::vec2 step :
+             {glm::vec2(0), glm::vec2(2, 0), glm::vec2(-2, 0), glm::vec2(0, 2), glm::vec2(0, -2)}) {
             if ((look(source, glm::vec2(at) + step).surface == seen.surface) != wanted) {
                 return false;
             }
@@ -214,7 +216,8 @@ TEST_F(WarpRendererTest, GivesTheSourceBackUnchanged) {
     for (std::uint32_t y = 0; y < kHeight; ++y) {
         const std::size_t from = 3 * ((std::size_t{y} + band.top_px) * colour.width_px + band.left_px);
         const auto source_row = std::span(colour.bytes).subspan(from, std::size_t{3} * kWidth);
-        const auto row = std::span(views.views[0].image.bytes).subspan(std::size_t{3} * kWidth * y, std::size_t{3} * kWidth);
+        const auto row =
+            std::span(views.views[0].image.bytes).subspan(std::size_t{3} * kWidth * y, std::size_t{3} * kWidth);
         ASSERT_TRUE(std::ranges::equal(row, source_row)) << "row " << y;
     }
     EXPECT_EQ(renderer_->counts()[0].extended(), 0U);
@@ -228,11 +231,12 @@ TEST_F(WarpRendererTest, ExtendsWhatIsBehindAndNeverTheCard) {
         int reddish = 0;
         int count = 0;
         for (std::size_t pixel = 0; pixel < holes.size(); ++pixel) {
-            const auto channel = [&](std::size_t c) { return std::to_integer<int>(views.views[i].image.bytes[3 * pixel + c]); };
+            const std::byte* const rgb = &views.views[i].image.bytes[3 * pixel];
+            const auto channel = [&](int c) { return std::to_integer<int>(rgb[c]); };
             if (holes[pixel]) {
                 ++count;
-                EXPECT_GT(channel(0) + channel(1) + channel(2), 20) << "black at " << pixel; // all surfaces are brighter
-                const bool is_red = channel(0) > 3 * channel(1) && channel(0) > 3 * channel(2); // as only the card may be
+                EXPECT_GT(channel(0) + channel(1) + channel(2), 20) << "black at " << pixel; // surfaces are brighter
+                const bool is_red = channel(0) > 3 * channel(1) && channel(0) > 3 * channel(2); // as only the card
                 reddish += is_red ? 1 : 0;
             }
         }

@@ -259,7 +259,8 @@ TEST_F(RoundTrip, WarpNeedsNoSceneAndGivesAboutTheSameImages) {
     };
     const auto thin = client("thin", with({"--mode", "views", "--frames", "0"})); // for as long as the others need
     const auto exact = client("exact", with({"--mode", "warp", "--frames", "4"}));
-    const auto small = client("small", with({"--mode", "warp", "--codec", "jpeg,zstd", "--quality", "90", "--frames", "4"}));
+    const auto small =
+        client("small", with({"--mode", "warp", "--codec", "jpeg,zstd", "--quality", "90", "--frames", "4"}));
     EXPECT_EQ(exact->exit_code(kLongestRun), 0) << text_of(folder_ / "exact.log");
     EXPECT_EQ(small->exit_code(kLongestRun), 0) << text_of(folder_ / "small.log");
     thin->interrupt();
