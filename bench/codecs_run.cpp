@@ -33,6 +33,9 @@ const char* name_of(PlaneSemantic semantic) {
     case PlaneSemantic::kMaterial:
         return "material";
     case PlaneSemantic::kColour:
+    case PlaneSemantic::kInverseDepth:
+    case PlaneSemantic::kResidualColour:
+    case PlaneSemantic::kResidualInverseDepth:
         break;
     }
     return kView;

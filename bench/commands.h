@@ -20,6 +20,9 @@ void add_holes_command(CLI::App& app);
 /// Bytes and times of every codec, and what lossy ones take away.
 void add_codecs_command(CLI::App& app);
 
+/// Views made without the scene: bytes, errors, time.
+void add_warp_command(CLI::App& app);
+
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 

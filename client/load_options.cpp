@@ -50,7 +50,7 @@ void add_group_flags(CLI::App& app, FlagText& text) {
     Settings& to = text.group;
     const char* const group = "Clients, without --scenario";
     add_setting(app, "--clients", "count", "How many (default 1)", to)->group(group);
-    add_setting(app, "--mode", "mode", "views or scene (default views)", to)->group(group);
+    add_setting(app, "--mode", "mode", "views, scene or warp (default views)", to)->group(group);
     add_setting(app, "--grid", "grid", "Views, ROWSxCOLS (default 4x4)", to)->group(group);
     add_setting(app, "--size", "size", "Pixels of a view, WIDTHxHEIGHT; without it: those of the source", to)
         ->group(group);

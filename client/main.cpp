@@ -41,11 +41,11 @@ client::play::PlayResult play_or_fall_back(client::Options& options, const Inter
     const auto on_progress = [&](const client::play::Progress& progress) { line.show(progress); };
     try {
         return client::play::play(options.play, on_progress, interrupt.token());
-    } catch (const client::play::NoDeviceForScene& error) {
+    } catch (const client::play::NoDeviceForViews& error) {
         if (!options.falls_back_to_views) {
             throw;
         }
-        log::warn("no device for mode scene, taking finished views", {{"reason", error.what()}});
+        log::warn("no device to make views, taking finished ones", {{"reason", error.what()}});
     }
     options.play.wish.mode = client::net::Mode::kViews;
     return client::play::play(options.play, on_progress, interrupt.token());
@@ -57,7 +57,7 @@ int run(client::Options options) {
     try {
         const client::play::PlayResult result = play_or_fall_back(options, interrupt);
         return report(options, result, interrupt.was_requested());
-    } catch (const client::play::NoDeviceForScene& error) {
+    } catch (const client::play::NoDeviceForViews& error) {
         std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
         return kExitUserError;
     } catch (const UserError& error) {

@@ -19,6 +19,8 @@ Examples:
     fieldcast-client --grid 3x3 --size 320x180 --frames 1 --out out/thin
   Hold the scene and make 25 views on the Vulkan device of this machine:
     fieldcast-client --mode scene --grid 5x5 --size 640x360 --frames 30 --out out/scene --write quilt,exr
+  Make 36 views without the scene, from the source's colour and depth:
+    fieldcast-client --mode warp --grid 6x6 --codec jpeg,zstd --frames 30
   Thirty-six views at about an eighth of the bytes:
     fieldcast-client --grid 6x6 --codec jpeg,zstd --frames 30
   A horizontal sweep for a lenticular display, with everything that can be written:
@@ -46,6 +48,7 @@ struct FlagText {
     float spacing_m = -1.0F;
     float convergence_m = -1.0F;
     bool no_reconnect = false;
+    bool no_residual = false;
 };
 
 void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
@@ -69,22 +72,24 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option(
            "--mode", text.modes,
            "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
-           "device; scene,views: scene if there is a device")
+           "device; warp: this machine does, without the scene; scene,views or warp,views: if there is a device")
         ->delimiter(',')
-        ->check(CLI::IsMember({"views", "scene"}))
+        ->check(CLI::IsMember({"views", "scene", "warp"}))
         ->capture_default_str();
     app.add_option("--planes", text.planes,
                    "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest")
         ->check(CLI::IsMember({"g-buffer", "illumination"}))
         ->capture_default_str();
     app.add_option("--codec", text.codecs,
-                   "Of views, or of the illumination in mode scene, most wanted first: zstd (lossless), raw, jpeg; of views: h264")
+                   "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
+                   "raw, jpeg; of views: h264")
         ->delimiter(',')
         ->check(CLI::IsMember({"zstd", "raw", "jpeg", "h264"}))
         ->capture_default_str();
     app.add_option("--quality", text.quality, "Of lossy codecs, 1 to 100; without it: the server's choice")
         ->check(CLI::Range(1, 100));
-    app.add_option("--device", play.device, "Of mode scene: part of the Vulkan device's name");
+    app.add_flag("--no-residual", text.no_residual, "Of mode warp: without what only the corners of the grid see");
+    app.add_option("--device", play.device, "Of modes scene and warp: part of the Vulkan device's name");
     app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
@@ -157,6 +162,10 @@ codec::CodecId codec_of(const std::string& word) {
                             : codec::CodecId::kZstdFiltered;
 }
 
+net::Mode mode_of(const std::string& word) {
+    return word == "scene" ? net::Mode::kScene : word == "warp" ? net::Mode::kWarp : net::Mode::kViews;
+}
+
 bool contains(const std::vector<std::string>& words, const char* word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -188,8 +197,9 @@ void read_text(const FlagText& text, Options& options) {
     read_access(options.play.server);
     net::Wish& wish = options.play.wish;
     read_grids(text, wish);
-    wish.mode = text.modes.front() == "scene" ? net::Mode::kScene : net::Mode::kViews;
-    options.falls_back_to_views = wish.mode == net::Mode::kScene && contains(text.modes, "views");
+    wish.mode = mode_of(text.modes.front());
+    wish.has_residual = !text.no_residual;
+    options.falls_back_to_views = wish.mode != net::Mode::kViews && contains(text.modes, "views");
     wish.planes = text.planes == "illumination" ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
     wish.quality = static_cast<std::uint8_t>(text.quality);
     wish.codecs.clear();
@@ -204,7 +214,7 @@ void read_text(const FlagText& text, Options& options) {
                         : text.save == "none" ? play::Save::kNone
                                               : play::Save::kLast;
     options.play.products = read_products(text.write);
-    if (options.play.products.source_exr && wish.mode == net::Mode::kViews) {
+    if (options.play.products.source_exr && wish.mode != net::Mode::kScene) {
         throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
     }
     if (wish.mode == net::Mode::kScene) {

@@ -131,7 +131,8 @@ const Setters<Group>& group_setters() {
     using Text = const std::string&;
     using wire::Decoding;
     static const std::vector<std::pair<std::string_view, net::Mode>> modes{{"views", net::Mode::kViews},
-                                                                           {"scene", net::Mode::kScene}};
+                                                                           {"scene", net::Mode::kScene},
+                                                                           {"warp", net::Mode::kWarp}};
     static const std::vector<std::pair<std::string_view, Decoding>> decodings{
         {"full", Decoding::kFull}, {"checksum", Decoding::kChecksum}, {"headers", Decoding::kHeaders}};
     static const std::vector<std::pair<std::string_view, net::PlaneWish>> planes{
@@ -238,6 +239,8 @@ std::string_view name_of(net::Mode mode) {
         return "views";
     case net::Mode::kScene:
         return "scene";
+    case net::Mode::kWarp:
+        return "warp";
     }
     return "";
 }

@@ -19,6 +19,8 @@ v1::DeliveryMode to_proto(Mode mode) {
         return v1::DELIVERY_MODE_VIEWS;
     case Mode::kScene:
         return v1::DELIVERY_MODE_SCENE;
+    case Mode::kWarp:
+        return v1::DELIVERY_MODE_WARP;
     }
     return v1::DELIVERY_MODE_UNSPECIFIED;
 }
@@ -36,7 +38,7 @@ v1::PlaneSet to_proto(PlaneWish planes) {
 /// Planes for which `Wish::codecs` holds.
 bool is_picture(v1::PlaneSemantic semantic) {
     return semantic == v1::PLANE_SEMANTIC_COLOUR || semantic == v1::PLANE_SEMANTIC_DIFFUSE ||
-           semantic == v1::PLANE_SEMANTIC_SPECULAR;
+           semantic == v1::PLANE_SEMANTIC_SPECULAR || semantic == v1::PLANE_SEMANTIC_RESIDUAL_COLOUR;
 }
 
 void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic semantic) {
@@ -102,7 +104,7 @@ Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wir
     limits.max_width_px = set.width_px;
     limits.max_height_px = set.height_px;
     limits.max_frame_bytes = plane_bytes(PlaneFormat::kRgb8, set.width_px, set.height_px) * set.grid.view_count();
-    if (mode == Mode::kScene) {
+    if (mode != Mode::kViews) {
         limits.max_frame_bytes = 0;
         for (const v1::PlaneHeader& plane : message.planes()) {
             const std::optional<PlaneRoom> room = plane_room(plane);
@@ -121,9 +123,13 @@ Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wir
     return limits;
 }
 
-std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set) {
-    if (frame.find(PlaneSemantic::kDiffuse) == nullptr || frame.find(PlaneSemantic::kSpecular) == nullptr) {
+std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set, Mode mode) {
+    const auto lacks = [&](PlaneSemantic semantic) { return frame.find(semantic) == nullptr; };
+    if (mode == Mode::kScene && (lacks(PlaneSemantic::kDiffuse) || lacks(PlaneSemantic::kSpecular))) {
         return "frame without illumination planes";
+    }
+    if (mode == Mode::kWarp && (lacks(PlaneSemantic::kColour) || lacks(PlaneSemantic::kInverseDepth))) {
+        return "frame without colour and inverse depth";
     }
     const Camera& source = frame.header.source;
     if (set.height_px > source.height_px || set.width_px > source.width_px) {
@@ -161,11 +167,15 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     message.set_view_height_px(wish.height_px);
     message.set_fovy_rad(wish.fovy_rad);
     message.set_planes(to_proto(wish.planes));
-    if (wish.mode == Mode::kViews) {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
-    } else {
+    if (wish.mode == Mode::kScene) {
         add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
         add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+    } else {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
+    }
+    if (wish.mode == Mode::kWarp && wish.has_residual) {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_RESIDUAL_COLOUR);
+        message.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
     }
     message.set_max_frames_per_second(wish.max_frames_per_second);
     message.set_keeps_key_frames(true);
@@ -211,7 +221,7 @@ std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const
         return "frame of another delivery mode than agreed";
     }
     return views != nullptr ? views_problem(*views, agreement.view_set)
-                            : source_problem(std::get<SourceFrame>(frame.content), agreement.view_set);
+                            : source_problem(std::get<SourceFrame>(frame.content), agreement.view_set, agreement.mode);
 }
 
 } // namespace fieldcast::client::net

@@ -15,7 +15,8 @@ namespace fieldcast::client::net {
 
 enum class Mode : std::uint8_t {
     kViews, ///< the server sends finished views
-    kScene, ///< the server sends planes of the source; we make the views
+    kScene, ///< the server sends planes of the source; we have the scene and make the views
+    kWarp,  ///< the server sends the source's colour and depth; we make the views without the scene
 };
 
 /// Of mode kScene.
@@ -34,7 +35,8 @@ struct Wish {
     std::uint32_t height_px = 0;
     float fovy_rad = 0.0F; ///< vertical
     PlaneWish planes = PlaneWish::kWithGBuffer;
-    /// Of views, or of the illumination in mode kScene, most wanted first; other planes are always lossless.
+    bool has_residual = true; ///< of mode kWarp: also what corner views see and the source does not
+    /// Of views, of the illumination in mode kScene or of colour in mode kWarp, most wanted first; other planes are always lossless.
     std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};
     std::uint8_t quality = 0; ///< of lossy codecs, 1 to 100; 0: the server's choice
     float max_frames_per_second = 0.0F;
@@ -57,7 +59,7 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);
 Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish);
 
 /// Why a frame does not fit what was agreed, or nothing. Afterwards views have the agreed number and size, and source
-/// frames contain the illumination and no view is larger than the source.
+/// frames contain the planes that views are made from and no view is larger than the source.
 std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const Agreement& agreement);
 
 } // namespace fieldcast::client::net

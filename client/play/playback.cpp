@@ -2,6 +2,7 @@
 #include "client/play/playback.h"
 #include "client/play/scene_player.h"
 #include "client/play/scene_source.h"
+#include "client/play/warp_player.h"
 
 #include "core/base/log.h"
 
@@ -14,29 +15,38 @@
 namespace fieldcast::client::play {
 namespace {
 
-/// Device, scene and renderers of mode kScene; built in this order, destroyed in reverse.
-struct SceneSide {
+/// Device and renderers of modes kScene and kWarp; built in this order, destroyed in reverse.
+struct RenderSide {
     gpu::Device device;
-    scene::SceneHash hash{};
-    std::optional<ScenePlayer> player;
+    std::optional<scene::SceneHash> hash; ///< of the scene that we have
+    std::optional<ScenePlayer> scene;     ///< of mode kScene
+    std::optional<WarpPlayer> warp;       ///< of mode kWarp
 
-    explicit SceneSide(const gpu::DeviceOptions& options) : device(options) {}
+    explicit RenderSide(const gpu::DeviceOptions& options) : device(options) {}
+    Decoded<Views> play(const SourceFrame& frame, const wire::ViewSet& set) {
+        return scene ? scene->play(frame, set) : warp->play(frame, set);
+    }
 };
 
-std::unique_ptr<SceneSide> make_scene_side(const PlayOptions& options, const std::stop_token& stop) {
+std::unique_ptr<RenderSide> make_render_side(const PlayOptions& options, const std::stop_token& stop) {
     gpu::DeviceOptions device_options;
     device_options.name_contains = options.device;
-    std::unique_ptr<SceneSide> side;
+    const bool is_scene = options.wish.mode == net::Mode::kScene;
+    std::unique_ptr<RenderSide> side;
     try {
-        side = std::make_unique<SceneSide>(device_options);
+        side = std::make_unique<RenderSide>(device_options);
     } catch (const gpu::NoDeviceError& error) {
-        throw NoDeviceForScene(std::string("mode scene makes its views on a Vulkan device of this machine: ") +
-                               error.what() + ". With --mode views the server makes them.");
+        throw NoDeviceForViews(std::string(is_scene ? "mode scene" : "mode warp") +
+                               " makes its views on a Vulkan device of this machine: " + error.what() + ". With --mode views the server makes them.");
     }
     log::info("device chosen", {{"name", side->device.info().name}, {"driver", side->device.info().driver}});
+    if (!is_scene) {
+        side->warp.emplace(side->device);
+        return side;
+    }
     scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
     side->hash = scene.hash;
-    side->player.emplace(side->device, std::move(scene), options.traversal);
+    side->scene.emplace(side->device, std::move(scene), options.traversal);
     return side;
 }
 
@@ -55,7 +65,7 @@ std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, st
 
 class Player {
 public:
-    Player(const PlayOptions& options, SceneSide* scene_side) : options_(options), scene_side_(scene_side) {}
+    Player(const PlayOptions& options, RenderSide* render_side) : options_(options), render_side_(render_side) {}
 
     /// False if the frame could not be shown.
     bool show(Arrival arrival);
@@ -71,7 +81,7 @@ private:
     void record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t rendered_ns, std::int64_t shown_ns);
 
     const PlayOptions& options_;
-    SceneSide* scene_side_; ///< null in mode kViews
+    RenderSide* render_side_; ///< null in mode kViews
     std::optional<Shown> last_;
     std::uint64_t shown_count_ = 0;
     std::deque<ShownFrame> frames_; ///< the last ones
@@ -86,8 +96,8 @@ Decoded<Shown> Player::make(Arrival& arrival) {
         shown.views = std::move(received->views);
         return shown;
     }
-    FC_ASSERT(scene_side_ != nullptr, "source frames are agreed on in mode kScene only");
-    Decoded<Views> views = scene_side_->player->play(std::get<SourceFrame>(arrival.arrived.frame.content), set);
+    FC_ASSERT(render_side_ != nullptr, "source frames are not agreed on in mode kViews");
+    Decoded<Views> views = render_side_->play(std::get<SourceFrame>(arrival.arrived.frame.content), set);
     if (!views) {
         return tl::unexpected(views.error());
     }
@@ -110,7 +120,7 @@ bool Player::show(Arrival arrival) {
         write(options_.out / name.data());
     }
     const std::int64_t shown_ns = net::steady_now_ns();
-    report_times(arrival, false, scene_side_ != nullptr ? rendered_ns : 0, shown_ns);
+    report_times(arrival, false, render_side_ != nullptr ? rendered_ns : 0, shown_ns);
     record(arrival, begin_ns, rendered_ns, shown_ns);
     return true;
 }
@@ -123,7 +133,7 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.pose_to_decoded_ms = ms_between(arrival.arrived.pose_sampled_ns, arrival.arrived.decoded_ns);
     frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
     frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
-    frame.render_ms = scene_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
+    frame.render_ms = render_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
     add_discards(last_->views, frame);
     frames_.push_back(frame);
@@ -135,8 +145,8 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
 
 void Player::write(const std::filesystem::path& folder) const {
     std::optional<SourceFrame> source;
-    if (options_.products.source_exr && scene_side_ != nullptr) {
-        source = scene_side_->player->source(); // of the frame played last, which is the one shown last
+    if (options_.products.source_exr && render_side_ != nullptr && render_side_->scene) {
+        source = render_side_->scene->source(); // of the frame played last, which is the one shown last
     }
     const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
     image::write_light_field(folder, picture, options_.products);
@@ -167,7 +177,10 @@ Progress Player::progress() const {
 void describe(const PlayOptions& options, const std::optional<net::Agreement>& agreement, Summary& summary) {
     const net::Wish& wish = options.wish;
     const bool rebuilds = wish.planes == net::PlaneWish::kIllumination;
-    summary.mode = wish.mode == net::Mode::kViews ? "views" : rebuilds ? "scene, illumination" : "scene, with G-buffer";
+    summary.mode = wish.mode == net::Mode::kViews  ? "views"
+                   : wish.mode == net::Mode::kWarp ? (wish.has_residual ? "warp" : "warp, without residual layer")
+                   : rebuilds                      ? "scene, illumination"
+                                                   : "scene, with G-buffer";
     summary.grid = std::to_string(wish.rows) + "x" + std::to_string(wish.cols);
     if (agreement) {
         const wire::ViewSet& set = agreement->view_set;
@@ -178,12 +191,12 @@ void describe(const PlayOptions& options, const std::optional<net::Agreement>& a
 } // namespace
 
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
-    std::unique_ptr<SceneSide> scene_side;
-    if (options.wish.mode == net::Mode::kScene) {
-        scene_side = make_scene_side(options, stop);
+    std::unique_ptr<RenderSide> render_side;
+    if (options.wish.mode != net::Mode::kViews) {
+        render_side = make_render_side(options, stop);
     }
-    Receiver receiver(options.server, options.wish, scene_side ? std::optional(scene_side->hash) : std::nullopt);
-    Player player(options, scene_side.get());
+    Receiver receiver(options.server, options.wish, render_side ? render_side->hash : std::nullopt);
+    Player player(options, render_side.get());
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };
     while (!is_complete()) {

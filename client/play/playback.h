@@ -22,9 +22,10 @@ struct PlayOptions {
     Save save = Save::kLast;
     std::filesystem::path out = "out";
     image::LightFieldProducts products;
+    // Of modes that make views here:
+    std::string device; ///< part of the name; empty: the best
     // Of mode kScene:
     std::filesystem::path cache_folder;
-    std::string device;             ///< part of the name; empty: the best
     std::string traversal = "auto"; ///< as in scene::choose_traversal
 };
 
@@ -42,15 +43,15 @@ struct PlayResult {
     std::optional<Failure> failure; ///< empty if all wanted frames were shown, or on a stop request
 };
 
-/// There is no Vulkan device for mode kScene. The message says what was found and what works without one.
-class NoDeviceForScene : public std::runtime_error {
+/// There is no Vulkan device for modes that make views here. The message says what was found and what works without one.
+class NoDeviceForViews : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
 /// Receives frames, makes or takes their views, writes what `options` asks for. Calls `on_progress` after each frame.
 /// On a stop request the file being written is finished, and with Save::kLast the last frame is written.
-/// Throws UserError, net::NetError, NoDeviceForScene, std::system_error.
+/// Throws UserError, net::NetError, NoDeviceForViews, std::system_error.
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop);
 
 } // namespace fieldcast::client::play

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/scene_player.h"
 
+#include "client/play/view_set_request.h"
+
 #include <algorithm>
 
 namespace fieldcast::client::play {
 namespace {
-
-render::ViewRequest view_request(const wire::ViewSet& set) {
-    render::ViewRequest request;
-    request.geometry = set.grid.geometry;
-    request.fovy_rad = set.fovy_rad;
-    request.width_px = set.width_px;
-    request.height_px = set.height_px;
-    request.positions = lattice_positions(set.grid);
-    return request;
-}
 
 bool has_surfaces(const SourceFrame& frame) {
     return std::all_of(render::kSourceSemantics.begin(), render::kSourceSemantics.end(),
@@ -40,7 +32,7 @@ Decoded<Views> ScenePlayer::play(const SourceFrame& frame, const wire::ViewSet& 
     if (expected_layers > 0 || !has_surfaces(frame)) { // the surfaces of layers never travel
         surfaces_.render(planes_);
     }
-    return views_.render(planes_, view_request(set));
+    return views_.render(planes_, view_set_request(set));
 }
 
 SourceFrame ScenePlayer::source() const {

@@ -236,6 +236,7 @@ ByteFilter filter_for(PlaneFormat format) {
     case PlaneFormat::kF32:
         return {Predictor::kGradient, Layout::kWords32, true};
     case PlaneFormat::kOct2x16:
+    case PlaneFormat::kR16:
         return {Predictor::kGradient, Layout::kWords16, true};
     case PlaneFormat::kU32:
         return {Predictor::kNone, Layout::kBytes, false};

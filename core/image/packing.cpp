@@ -98,6 +98,8 @@ glm::vec3 unpack_pixel(const Plane& plane, std::size_t pixel) {
         return {static_cast<float>(byte(2 * pixel)) / 255.0F, static_cast<float>(byte(2 * pixel + 1)) / 255.0F, 0.0F};
     case PlaneFormat::kRgb8:
         return {linear[byte(3 * pixel)], linear[byte(3 * pixel + 1)], linear[byte(3 * pixel + 2)]};
+    case PlaneFormat::kR16:
+        return glm::vec3(static_cast<float>(byte(2 * pixel) | byte(2 * pixel + 1) << 8));
     case PlaneFormat::kU32:
         break;
     }

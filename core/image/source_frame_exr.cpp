@@ -38,6 +38,12 @@ Layout layout_of(PlaneSemantic semantic) {
         return {"material", {"roughness", "metallic"}, OIIO::TypeDesc::HALF};
     case PlaneSemantic::kColour:
         return {"colour", {"R", "G", "B"}, OIIO::TypeDesc::HALF};
+    case PlaneSemantic::kInverseDepth:
+        return {"inverse_depth", {"Y"}, OIIO::TypeDesc::FLOAT};
+    case PlaneSemantic::kResidualColour:
+        return {"residual_colour", {"R", "G", "B"}, OIIO::TypeDesc::HALF};
+    case PlaneSemantic::kResidualInverseDepth:
+        return {"residual_inverse_depth", {"Y"}, OIIO::TypeDesc::FLOAT};
     }
     FC_ASSERT(false, "plane semantic is known");
     return {};

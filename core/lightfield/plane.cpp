@@ -11,6 +11,7 @@ std::uint32_t bytes_per_pixel(PlaneFormat format) {
     case PlaneFormat::kU32:
         return 4;
     case PlaneFormat::kRg8:
+    case PlaneFormat::kR16:
         return 2;
     case PlaneFormat::kRgb8:
         return 3;

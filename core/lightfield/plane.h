@@ -15,7 +15,10 @@ enum class PlaneSemantic : std::uint8_t {
     kNormal = 4,   ///< shading normal, world space, octahedral
     kId = 5,       ///< instance << 12 | material; 0xFFFFFFFF where nothing was hit
     kMaterial = 6, ///< roughness, metallic
-    kColour = 7,   ///< display-referred sRGB of a finished view
+    kColour = 7,   ///< display-referred sRGB of a finished view, or of the source with its guard band
+    kInverseDepth = 20,         ///< 1 / view depth in units of FrameHeader::inverse_depth_unit; 0 where nothing was hit
+    kResidualColour = 21,       ///< as kColour, of ResidualLayer
+    kResidualInverseDepth = 22, ///< as kInverseDepth, of ResidualLayer
 };
 
 /// How one pixel is stored, little-endian. Values are on the wire: never renumber.
@@ -26,6 +29,7 @@ enum class PlaneFormat : std::uint8_t {
     kU32 = 4,
     kRg8 = 5,  ///< 2 bytes, unorm
     kRgb8 = 6, ///< 3 bytes, sRGB
+    kR16 = 20, ///< u16
 };
 
 std::uint32_t bytes_per_pixel(PlaneFormat format); ///< 0 for a value that is not a format

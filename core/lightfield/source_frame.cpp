@@ -20,7 +20,19 @@ std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic) {
     return static_cast<std::uint32_t>(header.source_positions.size()) * (has_layers ? 1 + header.layer_count : 1);
 }
 
+bool is_residual(PlaneSemantic semantic) {
+    return semantic == PlaneSemantic::kResidualColour || semantic == PlaneSemantic::kResidualInverseDepth;
+}
+
+std::uint32_t plane_width(const FrameHeader& header, PlaneSemantic semantic) {
+    return is_residual(semantic) ? kResidualColumns * kResidualTile
+                                 : with_guard_band(header.source, header.guard_band).width_px;
+}
+
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic) {
+    if (is_residual(semantic)) {
+        return residual_height(header.residual.tiles.size());
+    }
     return with_guard_band(header.source, header.guard_band).height_px * page_count(header, semantic);
 }
 

@@ -4,6 +4,7 @@
 #include "core/lightfield/camera.h"
 #include "core/lightfield/plane.h"
 #include "core/lightfield/render_settings.h"
+#include "core/lightfield/residual_layer.h"
 #include "core/lightfield/view_grid.h"
 
 #include <string>
@@ -41,6 +42,9 @@ struct FrameHeader {
     /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
     /// (accumulate); 0: the usual way.
     std::uint32_t still_frames = 0;
+    /// Step of planes that hold inverse depth, 1/m; 0: there are none.
+    float inverse_depth_unit = 0.0F;
+    ResidualLayer residual; ///< of planes kResidual…
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;
@@ -49,7 +53,7 @@ struct FrameHeader {
 /// What one frame of path tracing yields, in wire precision: the border between server and clients.
 struct SourceFrame {
     FrameHeader header;
-    std::vector<Plane> planes; ///< of plane_height() and the widened source's width, at most one per semantic
+    std::vector<Plane> planes; ///< of plane_width() and plane_height(), at most one per semantic
 
     const Plane* find(PlaneSemantic semantic) const; ///< null if absent
 };
@@ -61,7 +65,14 @@ Camera widened_source(const FrameHeader& header, std::size_t index);
 /// (illumination only) the nearest BLEND surface in front of that, source by source, then the next.
 std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic);
 
-/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has.
+/// Whether planes of that meaning hold tiles of `FrameHeader::residual`.
+bool is_residual(PlaneSemantic semantic);
+
+/// Width of a plane of a source frame: the widened source's, or that of the tiles of the residual layer.
+std::uint32_t plane_width(const FrameHeader& header, PlaneSemantic semantic);
+
+/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has, or that of the tiles
+/// of the residual layer.
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic);
 
 } // namespace fieldcast

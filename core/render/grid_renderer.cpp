@@ -20,6 +20,14 @@ std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of li
     return (request.width_px * request.height_px + 3U) & ~3U;
 }
 
+Camera request_camera(const Camera& source, const ViewRequest& request, LatticePosition position) {
+    const GuardBand& band = request.guard_band;
+    const Camera inner = view_camera(source, request.geometry, position, request.fovy_rad,
+                                     request.width_px - band.left_px - band.right_px,
+                                     request.height_px - band.top_px - band.bottom_px);
+    return with_guard_band(inner, band);
+}
+
 } // namespace
 
 struct GridRenderer::State {
@@ -154,8 +162,7 @@ void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::
     std::vector<shared::ViewRecord> view_records;
     view_cameras.clear();
     for (const LatticePosition position : request.positions) {
-        view_cameras.push_back(view_camera(header.source, request.geometry, position, request.fovy_rad,
-                                           request.width_px, request.height_px));
+        view_cameras.push_back(request_camera(header.source, request, position));
         camera_records.push_back(make_camera_record(view_cameras.back()));
         view_records.push_back({view_seed(header, position), 0U});
     }

@@ -35,6 +35,11 @@
 #include "shaders/trace_source_rayquery.spv.h"
 #include "shaders/visibility_bvh.spv.h"
 #include "shaders/visibility_rayquery.spv.h"
+#include "shaders/warp_bounds.spv.h"
+#include "shaders/warp_fill.spv.h"
+#include "shaders/warp_link.spv.h"
+#include "shaders/warp_unpack.spv.h"
+#include "shaders/warp_views.spv.h"
 
 #include "core/base/error.h"
 
@@ -81,6 +86,11 @@ const EmbeddedKernel kKernels[] = {
     {KernelId::kTraceReference, "trace_reference", trace_reference_bvh_spv, trace_reference_rayquery_spv},
     {KernelId::kTraceSource, "trace_source", trace_source_bvh_spv, trace_source_rayquery_spv},
     {KernelId::kVisibility, "visibility", visibility_bvh_spv, visibility_rayquery_spv},
+    {KernelId::kWarpBounds, "warp_bounds", warp_bounds_spv, warp_bounds_spv},
+    {KernelId::kWarpFill, "warp_fill", warp_fill_spv, warp_fill_spv},
+    {KernelId::kWarpLink, "warp_link", warp_link_spv, warp_link_spv},
+    {KernelId::kWarpUnpack, "warp_unpack", warp_unpack_spv, warp_unpack_spv},
+    {KernelId::kWarpViews, "warp_views", warp_views_spv, warp_views_spv},
 };
 
 } // namespace

@@ -36,6 +36,11 @@ enum class KernelId {
     kTraceReference,
     kTraceSource,
     kVisibility,
+    kWarpBounds,
+    kWarpFill,
+    kWarpLink,
+    kWarpUnpack,
+    kWarpViews,
 };
 
 /// Code of a kernel, in the variant for `traversal` if it traces rays.

@@ -30,7 +30,11 @@ PlaneFormat source_format(PlaneSemantic semantic) {
     case PlaneSemantic::kMaterial:
         return PlaneFormat::kRg8;
     case PlaneSemantic::kColour:
+    case PlaneSemantic::kResidualColour:
         return PlaneFormat::kRgb8;
+    case PlaneSemantic::kInverseDepth:
+    case PlaneSemantic::kResidualInverseDepth:
+        return PlaneFormat::kR16;
     }
     return PlaneFormat::kU32;
 }

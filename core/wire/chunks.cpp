@@ -114,6 +114,9 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
         entry.set_width_px(plane->width_px);
         entry.set_height_px(plane->height_px);
     }
+    if (std::ranges::none_of(choices, is_residual, &PlaneChoice::semantic)) {
+        message.clear_residual(); // of use to nobody else
+    }
     append_header(frame, std::move(message));
     for (std::uint32_t part = 0; part < planes.size(); ++part) {
         append_plane(frame, part, *planes[part], options);

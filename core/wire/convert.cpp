@@ -220,6 +220,69 @@ Decoded<void> sources_from_proto(const v1::SourceSet& message, FrameHeader& head
     return {};
 }
 
+constexpr float kMaxInverseDepthUnit = 1e6F; // 1/m
+
+/// Sizes of planes follow from the tiles, so their number is bounded before any is kept.
+Decoded<std::vector<std::uint32_t>> tiles_from_proto(const v1::ResidualLayer& message, std::uint64_t tile_count) {
+    if (static_cast<std::uint64_t>(message.gaps_size()) > std::min<std::uint64_t>(max_residual_tiles(), tile_count)) {
+        return decode_error("header.residual.gaps: " + std::to_string(message.gaps_size()) + " tiles, at most " +
+                            std::to_string(std::min<std::uint64_t>(max_residual_tiles(), tile_count)));
+    }
+    std::vector<std::uint32_t> tiles;
+    tiles.reserve(static_cast<std::size_t>(message.gaps_size()));
+    std::uint64_t next = 0;
+    for (const std::uint32_t gap : message.gaps()) {
+        next += gap;
+        if (next >= tile_count) {
+            return decode_error("header.residual.gaps: tile " + std::to_string(next) + " of " +
+                                std::to_string(tile_count));
+        }
+        tiles.push_back(static_cast<std::uint32_t>(next));
+        ++next;
+    }
+    return tiles;
+}
+
+void residual_to_proto(const ResidualLayer& residual, v1::ResidualLayer& message) {
+    for (const LatticePosition position : residual.positions) {
+        v1::LatticePosition& entry = *message.add_positions();
+        entry.set_row_halves(position.row_halves);
+        entry.set_col_halves(position.col_halves);
+    }
+    const LatticeGeometry& geometry = residual.geometry;
+    message.set_spacing_x_m(geometry.spacing_m.x);
+    message.set_spacing_y_m(geometry.spacing_m.y);
+    message.set_convergence_m(std::isinf(geometry.convergence_m) ? 0.0F : geometry.convergence_m);
+    std::uint32_t next = 0;
+    for (const std::uint32_t tile : residual.tiles) {
+        message.add_gaps(tile - next);
+        next = tile + 1;
+    }
+}
+
+/// Positions and geometry are read as those of sources are.
+Decoded<ResidualLayer> residual_from_proto(const v1::ResidualLayer& message, const Camera& source) {
+    if (message.positions_size() > static_cast<int>(kMaxResidualViews)) {
+        return decode_error("header.residual: " + std::to_string(message.positions_size()) + " views, at most 4");
+    }
+    v1::SourceSet views;
+    *views.mutable_positions() = message.positions();
+    views.set_spacing_x_m(message.spacing_x_m());
+    views.set_spacing_y_m(message.spacing_y_m());
+    views.set_convergence_m(message.convergence_m());
+    FrameHeader read;
+    if (const auto checked = sources_from_proto(views, read); !checked) {
+        return decode_error("header.residual, read as " + checked.error().message);
+    }
+    const glm::uvec2 tiles_of_view = residual_tiles(source.width_px, source.height_px);
+    const std::uint64_t tile_count = std::uint64_t{tiles_of_view.x} * tiles_of_view.y * read.source_positions.size();
+    auto tiles = tiles_from_proto(message, tile_count);
+    if (!tiles) {
+        return tl::unexpected(tiles.error());
+    }
+    return ResidualLayer{std::move(read.source_positions), read.source_geometry, std::move(*tiles)};
+}
+
 } // namespace
 
 void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
@@ -233,6 +296,10 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     to_proto(header.settings, *message.mutable_settings());
     message.set_layer_count(header.layer_count);
     message.set_still_frames(header.still_frames);
+    message.set_inverse_depth_unit(header.inverse_depth_unit);
+    if (!header.residual.positions.empty()) {
+        residual_to_proto(header.residual, *message.mutable_residual());
+    }
     message.clear_render_times();
     for (const StageTime& stage : header.render_times) {
         v1::StageTime& entry = *message.add_render_times();
@@ -267,6 +334,17 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
         if (const auto read = sources_from_proto(message.sources(), header); !read) {
             return tl::unexpected(read.error());
         }
+    }
+    header.inverse_depth_unit = message.inverse_depth_unit();
+    if (!(header.inverse_depth_unit >= 0.0F && header.inverse_depth_unit <= kMaxInverseDepthUnit)) {
+        return decode_error("header.inverse_depth_unit: must lie between 0 and 1e6");
+    }
+    if (message.has_residual()) {
+        auto residual = residual_from_proto(message.residual(), *source);
+        if (!residual) {
+            return tl::unexpected(residual.error());
+        }
+        header.residual = std::move(*residual);
     }
     const Camera widened = with_guard_band(*source, *band);
     if (!is_side(widened.width_px) || !is_side(plane_height(header, PlaneSemantic::kDiffuse))) {

@@ -257,12 +257,15 @@ std::optional<codec::CodecId> from_proto(v1::Codec codec) {
 }
 
 std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic) {
-    const bool is_known = semantic >= v1::PLANE_SEMANTIC_DIFFUSE && semantic <= v1::PLANE_SEMANTIC_COLOUR;
+    const bool is_known = (semantic >= v1::PLANE_SEMANTIC_DIFFUSE && semantic <= v1::PLANE_SEMANTIC_COLOUR) ||
+                          (semantic >= v1::PLANE_SEMANTIC_INVERSE_DEPTH &&
+                           semantic <= v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH);
     return is_known ? std::optional(static_cast<PlaneSemantic>(semantic)) : std::nullopt;
 }
 
 std::optional<PlaneFormat> from_proto(v1::PlaneFormat format) {
-    const bool is_known = format >= v1::PLANE_FORMAT_R11G11B10F && format <= v1::PLANE_FORMAT_RGB8;
+    const bool is_known = (format >= v1::PLANE_FORMAT_R11G11B10F && format <= v1::PLANE_FORMAT_RGB8) ||
+                          format == v1::PLANE_FORMAT_R16;
     return is_known ? std::optional(static_cast<PlaneFormat>(format)) : std::nullopt;
 }
 
@@ -280,7 +283,11 @@ PlaneFormat wire_format(PlaneSemantic semantic) {
     case PlaneSemantic::kMaterial:
         return PlaneFormat::kRg8;
     case PlaneSemantic::kColour:
+    case PlaneSemantic::kResidualColour:
         return PlaneFormat::kRgb8;
+    case PlaneSemantic::kInverseDepth:
+    case PlaneSemantic::kResidualInverseDepth:
+        return PlaneFormat::kR16;
     }
     return PlaneFormat::kRgb8;
 }
@@ -300,11 +307,14 @@ static_assert(same(PlaneSemantic::kDiffuse, v1::PLANE_SEMANTIC_DIFFUSE) &&
               same(PlaneSemantic::kNormal, v1::PLANE_SEMANTIC_NORMAL) &&
               same(PlaneSemantic::kId, v1::PLANE_SEMANTIC_ID) &&
               same(PlaneSemantic::kMaterial, v1::PLANE_SEMANTIC_MATERIAL) &&
-              same(PlaneSemantic::kColour, v1::PLANE_SEMANTIC_COLOUR));
+              same(PlaneSemantic::kColour, v1::PLANE_SEMANTIC_COLOUR) &&
+              same(PlaneSemantic::kInverseDepth, v1::PLANE_SEMANTIC_INVERSE_DEPTH) &&
+              same(PlaneSemantic::kResidualColour, v1::PLANE_SEMANTIC_RESIDUAL_COLOUR) &&
+              same(PlaneSemantic::kResidualInverseDepth, v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH));
 static_assert(same(PlaneFormat::kR11G11B10F, v1::PLANE_FORMAT_R11G11B10F) &&
               same(PlaneFormat::kF32, v1::PLANE_FORMAT_F32) && same(PlaneFormat::kOct2x16, v1::PLANE_FORMAT_OCT2X16) &&
               same(PlaneFormat::kU32, v1::PLANE_FORMAT_U32) && same(PlaneFormat::kRg8, v1::PLANE_FORMAT_RG8) &&
-              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8));
+              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8) && same(PlaneFormat::kR16, v1::PLANE_FORMAT_R16));
 
 } // namespace
 

@@ -142,7 +142,8 @@ EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoic
     for (const PlaneChoice choice : distinct) {
         const Plane* plane = frame.find(choice.semantic);
         FC_ASSERT(plane != nullptr, "a plane was chosen that the frame does not have");
-        const Plane* reference = key.source != nullptr ? key.source->find(choice.semantic) : nullptr;
+        const bool may_refer = key.source != nullptr && !is_residual(choice.semantic); // other tiles in every frame
+        const Plane* reference = may_refer ? key.source->find(choice.semantic) : nullptr;
         jobs.push_back({plane, fitting(reference, *plane), key.is_optional, frame.header.settings.exposure,
                         &source.planes.emplace_back(without_strips(*plane, choice.encoding))});
     }

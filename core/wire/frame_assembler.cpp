@@ -93,9 +93,10 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
 }
 
 Decoded<void> FrameAssembler::Frame::refer_to(const std::vector<Plane>& planes) {
-    const auto is_alike = [](const Part& part, const Plane& plane) {
-        return part.semantic == plane.semantic && part.format == plane.format && part.width_px == plane.width_px &&
-               part.height_px == plane.height_px;
+    const auto is_alike = [](const Part& part, const Plane& plane) { // tiles differ from frame to frame
+        return part.semantic == plane.semantic && part.format == plane.format &&
+               (is_residual(part.semantic) ||
+                (part.width_px == plane.width_px && part.height_px == plane.height_px));
     };
     if (!std::ranges::equal(parts, planes, is_alike)) {
         return decode_error("header.key_frame_id: that frame had other planes");
@@ -189,8 +190,10 @@ Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
     const auto decode_one = [&](std::size_t i) {
         const Strip& strip = undecoded[i];
         Part& part = parts[strip.part];
-        const Plane* reference = key_planes != nullptr ? &(*key_planes)[strip.part] : nullptr;
-        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band, {part.codec, reference, base_strips.find(strip.band)}, part.plane);
+        const bool has_reference = key_planes != nullptr && !is_residual(part.semantic);
+        const Plane* reference = has_reference ? &(*key_planes)[strip.part] : nullptr;
+        results[i] = codec::decode_strip(as_bytes(strip.bytes), strip.band,
+                                         {part.codec, reference, base_strips.find(strip.band)}, part.plane);
     };
     if (pool != nullptr) {
         pool->for_each(undecoded.size(), decode_one);

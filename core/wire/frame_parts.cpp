@@ -37,9 +37,11 @@ Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader&
         return decode_error("header.planes: codec " + std::to_string(message.codec()) + " is not for format " +
                             std::to_string(message.format()));
     }
-    const Camera widened = with_guard_band(header.source, header.guard_band);
-    if (message.width_px() != widened.width_px || message.height_px() != plane_height(header, *semantic)) {
-        return decode_error("header.planes: size differs from the source with guard band (and layers)");
+    if (message.width_px() != plane_width(header, *semantic) || message.height_px() != plane_height(header, *semantic)) {
+        return decode_error("header.planes: size differs from the source with guard band (and layers), or the tiles");
+    }
+    if (*format == PlaneFormat::kR16 && !(header.inverse_depth_unit > 0.0F)) {
+        return decode_error("header.inverse_depth_unit: must be above 0 for planes of inverse depth");
     }
     return Part{*semantic, *format, message.width_px(), message.height_px(), *codec};
 }

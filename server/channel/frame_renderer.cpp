@@ -15,10 +15,12 @@ std::int64_t steady_ns() {
         .count();
 }
 
-std::vector<PlaneSemantic> semantics_of(const std::vector<wire::PlaneChoice>& choices) {
+/// Those that the source renderer makes.
+std::vector<PlaneSemantic> source_semantics_of(const std::vector<wire::PlaneChoice>& choices) {
     std::vector<PlaneSemantic> semantics;
     for (const wire::PlaneChoice& choice : choices) {
-        if (std::ranges::find(semantics, choice.semantic) == semantics.end()) {
+        const bool is_source = std::ranges::find(render::kSourceSemantics, choice.semantic) != render::kSourceSemantics.end();
+        if (is_source && std::ranges::find(semantics, choice.semantic) == semantics.end()) {
             semantics.push_back(choice.semantic);
         }
     }
@@ -91,10 +93,27 @@ RenderedFrame FrameRenderer::render(std::uint64_t frame_id, const FrameMoment& m
     frame.header = source.header();
     if (!demand.planes.empty()) {
         frame.choices = demand.planes;
-        frame.source = source.download(semantics_of(demand.planes));
+        frame.source = make_planes(source, demand.planes);
     }
     frame.views = render_views(source, demand);
     frame.times.render_end_ns = steady_ns();
+    return frame;
+}
+
+SourceFrame FrameRenderer::make_planes(const render::SourcePlanes& source,
+                                       const std::vector<wire::PlaneChoice>& choices) {
+    const auto is_wanted = [&](PlaneSemantic semantic) {
+        return std::ranges::find(choices, semantic, &wire::PlaneChoice::semantic) != choices.end();
+    };
+    SourceFrame frame = source.download(source_semantics_of(choices));
+    if (is_wanted(PlaneSemantic::kColour) || is_wanted(PlaneSemantic::kInverseDepth)) {
+        if (warp_planes_ == nullptr) {
+            warp_planes_ = std::make_unique<render::WarpPlanesRenderer>(device_, *gpu_scene_, *grid_renderer_);
+        }
+        const bool has_residual =
+            is_wanted(PlaneSemantic::kResidualColour) || is_wanted(PlaneSemantic::kResidualInverseDepth);
+        warp_planes_->render(source, info_.largest_grid, has_residual, frame);
+    }
     return frame;
 }
 

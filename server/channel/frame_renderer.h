@@ -5,6 +5,7 @@
 #include "core/image/image_file.h"
 #include "core/render/grid_renderer.h"
 #include "core/render/source_renderer.h"
+#include "core/render/warp_planes.h"
 #include "core/scene/gpu_scene.h"
 #include "server/channel/channel_clock.h"
 #include "server/feed/channel_info.h"
@@ -68,6 +69,7 @@ private:
     void warm_up();
 
     FrameHeader pose(std::uint64_t frame_id, const FrameMoment& moment);
+    SourceFrame make_planes(const render::SourcePlanes& source, const std::vector<wire::PlaneChoice>& choices);
     std::vector<RenderedViews> render_views(const render::SourcePlanes& source, const feed::Demand& demand);
 
     const gpu::Device& device_;
@@ -77,6 +79,7 @@ private:
     std::unique_ptr<scene::GpuScene> gpu_scene_;
     std::unique_ptr<render::SourceRenderer> source_renderer_;
     std::unique_ptr<render::GridRenderer> grid_renderer_;
+    std::unique_ptr<render::WarpPlanesRenderer> warp_planes_; ///< null before somebody wants them
     std::optional<Camera> fixed_camera_;
     RenderSettings settings_;
     feed::ChannelInfo info_;

@@ -59,6 +59,7 @@ CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& c
     server_info_.set_version(FIELDCAST_VERSION);
     server_info_.add_modes(v1::DELIVERY_MODE_VIEWS);
     server_info_.add_modes(v1::DELIVERY_MODE_SCENE);
+    server_info_.add_modes(v1::DELIVERY_MODE_WARP);
     server_info_.add_codecs(v1::CODEC_ZSTD_FILTERED);
     server_info_.add_codecs(v1::CODEC_RAW);
     server_info_.add_codecs(v1::CODEC_JPEG);

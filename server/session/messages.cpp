@@ -1,19 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/negotiate.h"
 
+#include <algorithm>
+
 namespace fieldcast::session {
 
 namespace {
 
-void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const feed::ChannelInfo& channel) {
+/// Most that a plane of the channel's frames may measure; layers come on top.
+glm::uvec2 largest_plane(PlaneSemantic semantic, const feed::ChannelInfo& channel) {
+    if (is_residual(semantic)) {
+        const glm::uvec2 tiles = residual_tiles(channel.source_width_px, channel.source_height_px);
+        const std::size_t count = std::size_t{tiles.x} * tiles.y * kMaxResidualViews;
+        return {kResidualColumns * kResidualTile, residual_height(std::min(count, max_residual_tiles()))};
+    }
     const GuardBand& band = channel.guard_band;
+    return {channel.source_width_px + band.left_px + band.right_px,
+            (channel.source_height_px + band.top_px + band.bottom_px) * channel.source_count};
+}
+
+void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const feed::ChannelInfo& channel) {
     for (const wire::PlaneChoice& choice : wish.choices) {
         v1::PlaneHeader& plane = *message.add_planes();
         plane.set_semantic(wire::to_proto(choice.semantic));
         plane.set_format(wire::to_proto(wire::wire_format(choice.semantic)));
         plane.set_codec(wire::to_proto(choice.encoding.codec));
-        plane.set_width_px(channel.source_width_px + band.left_px + band.right_px);
-        plane.set_height_px((channel.source_height_px + band.top_px + band.bottom_px) * channel.source_count);
+        const glm::uvec2 size = largest_plane(choice.semantic, channel);
+        plane.set_width_px(size.x);
+        plane.set_height_px(size.y);
     }
 }
 

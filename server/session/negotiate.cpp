@@ -4,7 +4,6 @@
 #include "server/session/recorded.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -40,22 +39,26 @@ Chosen<std::shared_ptr<feed::Feed>> choose_channel(const std::string& wanted, Ch
     return refuse(v1::REFUSAL_REASON_NOT_FOUND, "channel", "there is no channel" + asked + "; there are: " + names);
 }
 
-Chosen<v1::DeliveryMode> choose_mode(const v1::Configure& wanted) {
+Chosen<v1::DeliveryMode> choose_mode(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
     if (wanted.modes().empty()) {
         return v1::DELIVERY_MODE_VIEWS;
     }
+    const bool has_warp = channel.source_count == 1;
     std::string asked;
     for (const int number : wanted.modes()) {
-        if (number == v1::DELIVERY_MODE_VIEWS || number == v1::DELIVERY_MODE_SCENE) {
+        const bool is_warp = number == v1::DELIVERY_MODE_WARP;
+        if (number == v1::DELIVERY_MODE_VIEWS || number == v1::DELIVERY_MODE_SCENE || (is_warp && has_warp)) {
             return static_cast<v1::DeliveryMode>(number);
         }
         if (asked.size() < 256) {
-            const bool is_warp = number == v1::DELIVERY_MODE_WARP;
             asked += (asked.empty() ? "" : ", ") + (is_warp ? std::string("WARP") : std::to_string(number));
         }
     }
+    const std::string offered =
+        has_warp ? "VIEWS, SCENE and WARP"
+                 : "VIEWS and SCENE (WARP needs one source, it has " + std::to_string(channel.source_count) + ")";
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "modes",
-                  "mode " + asked + " is not supported by this server; it offers VIEWS and SCENE");
+                  "mode " + asked + " is not supported by channel '" + channel.name + "'; it offers " + offered);
 }
 
 Chosen<ViewGrid> choose_grid(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
@@ -164,13 +167,36 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
                       " is supported; ZSTD_FILTERED and RAW are for every plane");
 }
 
-Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
-    constexpr std::array kAll{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
-                              PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
-    constexpr std::size_t kIlluminationCount = 2;
-    const bool with_g_buffer = wanted.planes() == v1::PLANE_SET_WITH_G_BUFFER;
+std::vector<PlaneSemantic> scene_planes(const v1::Configure& wanted) {
+    if (wanted.planes() != v1::PLANE_SET_WITH_G_BUFFER) {
+        return {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular};
+    }
+    return {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
+            PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
+}
+
+std::vector<PlaneSemantic> warp_planes(const v1::Configure& wanted) {
+    const auto is_wanted = [&](v1::WarpPlane plane) {
+        return std::ranges::find(wanted.warp_planes(), static_cast<int>(plane)) != wanted.warp_planes().end();
+    };
+    std::vector<PlaneSemantic> planes{PlaneSemantic::kColour, PlaneSemantic::kInverseDepth};
+    if (is_wanted(v1::WARP_PLANE_RESIDUAL)) {
+        planes.push_back(PlaneSemantic::kResidualColour);
+        planes.push_back(PlaneSemantic::kResidualInverseDepth);
+    }
+    if (is_wanted(v1::WARP_PLANE_NORMAL)) {
+        planes.push_back(PlaneSemantic::kNormal);
+    }
+    if (is_wanted(v1::WARP_PLANE_ID)) {
+        planes.push_back(PlaneSemantic::kId);
+    }
+    return planes;
+}
+
+Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel,
+                                 std::span<const PlaneSemantic> semantics) {
     feed::PlanesWish wish;
-    for (const PlaneSemantic semantic : std::span(kAll).first(with_g_buffer ? kAll.size() : kIlluminationCount)) {
+    for (const PlaneSemantic semantic : semantics) {
         const auto encoding = choose_encoding(wanted, semantic, channel);
         if (!encoding) {
             return tl::unexpected(encoding.error());
@@ -183,7 +209,10 @@ Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::Channe
 Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, const feed::ChannelInfo& channel, v1::DeliveryMode mode,
                                const wire::ViewSet& set) {
     if (mode == v1::DELIVERY_MODE_SCENE) {
-        return choose_planes(wanted, channel);
+        return choose_planes(wanted, channel, scene_planes(wanted));
+    }
+    if (mode == v1::DELIVERY_MODE_WARP) {
+        return choose_planes(wanted, channel, warp_planes(wanted));
     }
     const auto encoding = choose_encoding(wanted, PlaneSemantic::kColour, channel);
     if (!encoding) {
@@ -223,7 +252,7 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Chann
     }
     const feed::ChannelInfo& info = (*channel)->info();
     const v1::Configure wanted = narrowed(asked, info);
-    const auto mode = choose_mode(wanted);
+    const auto mode = choose_mode(wanted, info);
     if (!mode) {
         return tl::unexpected(mode.error());
     }

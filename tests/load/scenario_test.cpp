@@ -129,7 +129,7 @@ TEST_F(ScenarioTest, RefusesValuesThatMakeNoSense) {
     EXPECT_THAT(in_group("count = [1, 2]"), HasSubstr(at(2, "count: write one value")));
     EXPECT_THAT(in_group("think = nan"), HasSubstr(at(2, "think: write a number")));
     EXPECT_THAT(in_group("stay = -1"), HasSubstr(at(2, "stay: write a number")));
-    EXPECT_THAT(in_group("mode = \"warp\""), HasSubstr(at(2, "mode: write one of views, scene")));
+    EXPECT_THAT(in_group("mode = \"mesh\""), HasSubstr(at(2, "mode: write one of views, scene, warp")));
     EXPECT_THAT(in_group("reads-kbit-per-second = 0"), HasSubstr(at(2, "reads-kbit-per-second: write a number")));
 }
 

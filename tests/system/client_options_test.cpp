@@ -53,6 +53,17 @@ TEST(Options, ASecondModeIsTheFallBack) {
     EXPECT_TRUE(invocation.options->falls_back_to_views);
 }
 
+TEST(Options, WarpNeedsNoSceneAndHasAResidualLayerUnlessToldOtherwise) {
+    const Invocation invocation = read({"--mode", "warp,views", "--codec", "jpeg,zstd"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    EXPECT_EQ(invocation.options->play.wish.mode, client::net::Mode::kWarp);
+    EXPECT_TRUE(invocation.options->play.wish.has_residual);
+    EXPECT_TRUE(invocation.options->falls_back_to_views);
+    EXPECT_TRUE(invocation.options->play.cache_folder.empty());
+    EXPECT_FALSE(read({"--mode", "warp", "--no-residual"}).options->play.wish.has_residual);
+    EXPECT_EQ(read({"--mode", "warp", "--write", "exr"}).exit_code, 2);
+}
+
 TEST(Options, UnsetValuesAreLeftToTheChannel) {
     const Invocation invocation = read({});
     ASSERT_TRUE(invocation.options);

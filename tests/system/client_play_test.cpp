@@ -139,7 +139,7 @@ TEST_F(PlayTest, SceneWithoutADeviceSaysWhatWorks) {
         play::play(
             wanted, [](const play::Progress&) {}, stop_.get_token());
         FAIL() << "there is no such device";
-    } catch (const play::NoDeviceForScene& error) {
+    } catch (const play::NoDeviceForViews& error) {
         EXPECT_THAT(error.what(), HasSubstr("--mode views"));
     }
     EXPECT_EQ(server.call_count(), 0);

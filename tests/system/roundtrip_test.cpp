@@ -5,7 +5,9 @@
 #include "core/gpu/device.h"
 #include "core/image/image_file.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
@@ -185,6 +187,44 @@ protected:
         }
     }
 
+    /// Largest over all views of the frames that both clients wrote: root of the mean squared difference, of 255. Fails
+    /// where `other` is black and `one` is not.
+    double largest_difference(const std::string& one, const std::string& other) {
+        double largest = -1.0;
+        const std::set<std::string> others = frame_folders(folder_ / other);
+        for (const std::string& frame : frame_folders(folder_ / one)) {
+            for (int view = 0; others.count(frame) != 0 && view < kGridSide * kGridSide; ++view) {
+                const std::string name =
+                    "view_r" + std::to_string(view / kGridSide) + "_c" + std::to_string(view % kGridSide) + ".png";
+                const image::Rgba8 a = read_view(folder_ / one / frame / name);
+                const image::Rgba8 b = read_view(folder_ / other / frame / name);
+                largest = std::max(largest, difference(a, b));
+                EXPECT_LE(black_where_lit(b, a), 2) << frame << " " << name; // silhouettes move by a pixel
+            }
+        }
+        return largest;
+    }
+
+    static double difference(const image::Rgba8& a, const image::Rgba8& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            const double d = static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]);
+            sum += d * d;
+        }
+        return std::sqrt(sum * 4.0 / 3.0 / static_cast<double>(a.pixels.size())); // alpha is always the same
+    }
+
+    static int black_where_lit(const image::Rgba8& suspect, const image::Rgba8& truth) {
+        const auto sum = [](const image::Rgba8& image, std::size_t i) {
+            return image.pixels[i] + image.pixels[i + 1] + image.pixels[i + 2];
+        };
+        int count = 0;
+        for (std::size_t i = 0; i < suspect.pixels.size(); i += 4) {
+            count += sum(suspect, i) == 0 && sum(truth, i) > 60 ? 1 : 0;
+        }
+        return count;
+    }
+
     fs::path folder_;
     std::string port_;
     std::unique_ptr<Program> server_;
@@ -209,6 +249,30 @@ TEST_F(RoundTrip, ViewsAndSceneGiveTheSameImages) {
     EXPECT_GE(compare("thin", "lean"), 1) << "no frame reached both clients";
     EXPECT_THAT(text_of(folder_ / "thin.json"), testing::HasSubstr("\"failed\": 0"));
     EXPECT_THAT(text_of(folder_ / "lean.json"), testing::HasSubstr("\"sessions\": 1"));
+}
+
+TEST_F(RoundTrip, WarpNeedsNoSceneAndGivesAboutTheSameImages) {
+    const std::vector<std::string> every_frame{"--save", "all", "--write", "views"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), every_frame.begin(), every_frame.end());
+        return arguments;
+    };
+    const auto thin = client("thin", with({"--mode", "views", "--frames", "0"})); // for as long as the others need
+    const auto exact = client("exact", with({"--mode", "warp", "--frames", "4"}));
+    const auto small =
+        client("small", with({"--mode", "warp", "--codec", "jpeg,zstd", "--quality", "90", "--frames", "4"}));
+    EXPECT_EQ(exact->exit_code(kLongestRun), 0) << text_of(folder_ / "exact.log");
+    EXPECT_EQ(small->exit_code(kLongestRun), 0) << text_of(folder_ / "small.log");
+    thin->interrupt();
+    EXPECT_EQ(thin->exit_code(10s), 130) << text_of(folder_ / "thin.log");
+
+    const double of_exact = largest_difference("thin", "exact");
+    const double of_small = largest_difference("thin", "small");
+    EXPECT_GE(of_exact, 0.0) << "no frame reached both clients";
+    EXPECT_GE(of_small, 0.0) << "no frame reached both clients";
+    EXPECT_LE(of_exact, 14.0);
+    EXPECT_LE(of_small, 15.0);
+    EXPECT_FALSE(fs::exists(folder_ / "cache")) << "it fetched the scene";
 }
 
 TEST_F(RoundTrip, RefusalExitsWithTwoAndNamesTheLimit) {

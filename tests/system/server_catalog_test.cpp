@@ -47,9 +47,10 @@ TEST_F(Catalog, TellsWhatItOffersAndItsLimits) {
     v1::GetServerInfoResponse info;
     ASSERT_TRUE(stub_->GetServerInfo(&context_, {}, &info).ok());
     EXPECT_FALSE(info.version().empty());
-    ASSERT_EQ(info.modes_size(), 2) << "WARP is not offered";
+    ASSERT_EQ(info.modes_size(), 3);
     EXPECT_EQ(info.modes(0), v1::DELIVERY_MODE_VIEWS);
     EXPECT_EQ(info.modes(1), v1::DELIVERY_MODE_SCENE);
+    EXPECT_EQ(info.modes(2), v1::DELIVERY_MODE_WARP);
     EXPECT_EQ(info.limits().max_views(), 72U);
     EXPECT_EQ(info.limits().max_view_width_px(), 64U);
 }

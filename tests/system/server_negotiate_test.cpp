@@ -44,7 +44,7 @@ TEST_F(Negotiate, FillsEverythingLeftOpen) {
 }
 
 TEST_F(Negotiate, TakesTheFirstModeItHas) {
-    wanted_.add_modes(v1::DELIVERY_MODE_WARP);
+    wanted_.add_modes(static_cast<v1::DeliveryMode>(99));
     wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
     wanted_.add_modes(v1::DELIVERY_MODE_VIEWS);
     const auto answer = ask();
@@ -52,12 +52,47 @@ TEST_F(Negotiate, TakesTheFirstModeItHas) {
     EXPECT_EQ(answer->mode, v1::DELIVERY_MODE_SCENE);
 }
 
-TEST_F(Negotiate, RefusesWarpAlone) {
+std::vector<PlaneSemantic> planes_of(const Configuration& configuration) {
+    std::vector<PlaneSemantic> planes;
+    for (const wire::PlaneChoice& choice : std::get<feed::PlanesWish>(configuration.wish).choices) {
+        planes.push_back(choice.semantic);
+    }
+    return planes;
+}
+
+TEST_F(Negotiate, WarpHasColourAndDepthAndWhatElseIsAsked) {
+    using enum PlaneSemantic;
+    wanted_.add_modes(v1::DELIVERY_MODE_WARP);
+    auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->mode, v1::DELIVERY_MODE_WARP);
+    EXPECT_EQ(planes_of(*answer), (std::vector{kColour, kInverseDepth}));
+    wanted_.add_warp_planes(v1::WARP_PLANE_ID);
+    wanted_.add_warp_planes(static_cast<v1::WarpPlane>(99));
+    wanted_.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
+    wanted_.add_warp_planes(v1::WARP_PLANE_NORMAL);
+    answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(planes_of(*answer),
+              (std::vector{kColour, kInverseDepth, kResidualColour, kResidualInverseDepth, kNormal, kId}));
+    const v1::Configured message = to_message(*answer, 1, 1, 2);
+    EXPECT_EQ(message.planes(1).format(), v1::PLANE_FORMAT_R16);
+    EXPECT_EQ(message.planes(1).width_px(), 64U + 2 + 3);
+    EXPECT_EQ(message.planes(2).width_px(), 1024U);
+    EXPECT_EQ(message.planes(2).height_px(), 16U); // 4 views of 8 × 5 tiles are 160
+}
+
+TEST_F(Negotiate, RefusesWarpFromSeveralSources) {
+    feed::ChannelInfo info = test::synthetic_info("first");
+    info.source_count = 2;
+    channels_ = {std::make_shared<feed::Feed>(info)};
     wanted_.add_modes(v1::DELIVERY_MODE_WARP);
     const Refusal answer = refusal();
     EXPECT_EQ(answer.reason, v1::REFUSAL_REASON_UNSUPPORTED);
     EXPECT_EQ(answer.field, "modes");
-    EXPECT_NE(answer.message.find("WARP"), std::string::npos);
+    EXPECT_NE(answer.message.find("WARP needs one source, it has 2"), std::string::npos);
+    wanted_.add_modes(v1::DELIVERY_MODE_VIEWS);
+    EXPECT_TRUE(ask().has_value());
 }
 
 TEST_F(Negotiate, RefusesUnknownChannelNamingTheOthers) {

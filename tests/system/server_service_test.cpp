@@ -107,9 +107,9 @@ TEST_F(Service, SendsPlanesWithTheGuardBand) {
     EXPECT_TRUE(call.finish().ok());
 }
 
-TEST_F(Service, RefusesWarpAndCarriesOn) {
+TEST_F(Service, RefusesUnknownModesAndCarriesOn) {
     OpenCall call(connection_);
-    call.configure(wish(v1::DELIVERY_MODE_WARP));
+    call.configure(wish(static_cast<v1::DeliveryMode>(99)));
     const auto refused = call.read_until(Kind::kRefused);
     ASSERT_TRUE(refused.has_value());
     EXPECT_EQ(refused->refused().field(), "modes");

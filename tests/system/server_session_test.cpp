@@ -135,7 +135,7 @@ TEST_F(SessionTest, RefusalKeepsTheOldConfiguration) {
     configure();
     v1::Configure wanted;
     wanted.set_request_id(5);
-    wanted.add_modes(v1::DELIVERY_MODE_WARP);
+    wanted.add_modes(static_cast<v1::DeliveryMode>(99));
     configure(wanted);
     EXPECT_EQ(next().configured().epoch(), 1U);
     EXPECT_EQ(next().refused().request_id(), 5U);

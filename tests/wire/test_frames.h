@@ -29,6 +29,7 @@ inline FrameHeader test_header(std::uint64_t frame_id, std::uint32_t width_px = 
     header.settings.reprojection.min_weight = 0.0F;
     header.settings.holes = {false, true, 6, 5, true, false};
     header.noise_frame = 17;
+    header.inverse_depth_unit = 0.125F;
     header.render_times = {{"trace", 4.25}, {"denoise", 0.0}};
     return header;
 }

@@ -13,7 +13,8 @@
 namespace fieldcast::testing {
 
 inline constexpr std::array kAllFormats{PlaneFormat::kR11G11B10F, PlaneFormat::kF32, PlaneFormat::kOct2x16,
-                                        PlaneFormat::kU32,        PlaneFormat::kRg8, PlaneFormat::kRgb8};
+                                        PlaneFormat::kU32,        PlaneFormat::kRg8, PlaneFormat::kRgb8,
+                                        PlaneFormat::kR16};
 
 inline PlaneSemantic semantic_of(PlaneFormat format) {
     switch (format) {
@@ -29,6 +30,8 @@ inline PlaneSemantic semantic_of(PlaneFormat format) {
         return PlaneSemantic::kMaterial;
     case PlaneFormat::kRgb8:
         return PlaneSemantic::kColour;
+    case PlaneFormat::kR16:
+        return PlaneSemantic::kInverseDepth;
     }
     return PlaneSemantic::kColour;
 }
@@ -47,6 +50,8 @@ inline std::string name_of(PlaneFormat format) {
         return "rg8";
     case PlaneFormat::kRgb8:
         return "rgb8";
+    case PlaneFormat::kR16:
+        return "r16";
     }
     return "";
 }
@@ -106,6 +111,7 @@ inline codec::ByteFilter first_filter(PlaneFormat format) {
     case PlaneFormat::kF32:
         return {Predictor::kLeft, Layout::kWords32, false};
     case PlaneFormat::kOct2x16:
+    case PlaneFormat::kR16:
         return {Predictor::kGradient, Layout::kWords16, false};
     case PlaneFormat::kU32:
         return {Predictor::kNone, Layout::kBytes, false};

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/error.h"
+#include "core/gpu/recorder.h"
+#include "core/render/source_planes.h"
+#include "shaders/shared/warp.h"
+
+namespace fieldcast::render {
+
+/// The images that a WarpRenderer searches, on the device: the source with its guard band, and the views of the residual
+/// layer, of which only tiles are known.
+class WarpImages {
+public:
+    explicit WarpImages(const gpu::Device& device);
+
+    /// As WarpRenderer::upload. Blocks.
+    Decoded<void> upload(const SourceFrame& frame);
+
+    const FrameHeader& header() const { return header_; } ///< of the source, with the residual layer
+    std::uint32_t image_count() const { return static_cast<std::uint32_t>(images_.size()); }
+    const shared::WarpImage& image(std::size_t index) const { return images_[index]; }
+    const gpu::Buffer& records() const { return records_; } ///< WarpImage of each
+    const gpu::BindingLayout& layout() const { return layout_; }
+    const gpu::BindingSet& bindings() const { return set_; }
+
+    /// Where image `index` shows what `target` sees.
+    shared::WarpPath path(std::size_t index, const Camera& target) const;
+
+private:
+    /// Texels and blocks of all images.
+    struct Room {
+        std::uint32_t texels = 0;
+        std::uint32_t blocks = 0;
+        std::uint32_t coarse = 0;
+    };
+    Room place_images(const SourceFrame& frame);
+    void reserve(const Room& room);
+    void record_unpack(const Plane& colour, const Plane& inverse_depth, std::uint32_t tile_count);
+    void record_links();
+    void record_bounds();
+
+    const gpu::Device& device_;
+    gpu::Recorder recorder_;
+    gpu::BindingLayout layout_;
+    gpu::Kernel unpack_;
+    gpu::Kernel link_;
+    gpu::Kernel bounds_;
+    FrameHeader header_;
+    std::vector<shared::WarpImage> images_;
+    std::vector<Camera> cameras_; ///< of the images
+    gpu::Buffer records_;
+    gpu::Buffer colour_;        ///< of the planes being unpacked
+    gpu::Buffer inverse_depth_; ///< likewise
+    gpu::Buffer tiles_;
+    Room reserved_;
+    gpu::Buffer texels_;
+    gpu::Buffer blocks_;
+    gpu::Buffer coarse_;
+    gpu::TexelView texels_view_;
+    gpu::TexelView blocks_view_;
+    gpu::TexelView coarse_view_;
+    gpu::BindingSet set_;
+};
+
+} // namespace fieldcast::render
