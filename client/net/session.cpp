@@ -117,6 +117,9 @@ std::optional<Event> Session::handle(ReceivedMessage received) {
     case v1::ServerMessage::kGoingAway:
         return GoingAway{std::chrono::milliseconds(message.going_away().deadline_ms()),
                          printable(message.going_away().reason())};
+    case v1::ServerMessage::kSteeringGranted: // we never ask to steer
+    case v1::ServerMessage::kSteeringDenied:
+    case v1::ServerMessage::kSteeringReleased:
     case v1::ServerMessage::kHeartbeat:      // its arrival is its message
     case v1::ServerMessage::MESSAGE_NOT_SET: // a kind of message newer than this program
         return std::nullopt;

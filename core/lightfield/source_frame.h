@@ -6,6 +6,7 @@
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,15 @@ struct StageTime {
     double ms = 0.0;
 
     bool operator==(const StageTime&) const = default;
+};
+
+/// The pose that a client chose and a frame shows.
+struct AppliedPose {
+    std::uint64_t lease = 0;         ///< of who steers, > 0
+    std::uint64_t sequence = 0;      ///< within the lease
+    std::int64_t client_time_ns = 0; ///< when it was chosen, on that client's steady clock
+
+    bool operator==(const AppliedPose&) const = default;
 };
 
 inline constexpr std::uint32_t kMaxLayers = 2;
@@ -41,6 +51,7 @@ struct FrameHeader {
     /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
     /// (accumulate); 0: the usual way.
     std::uint32_t still_frames = 0;
+    std::optional<AppliedPose> applied_pose; ///< that `source` follows; empty: nobody has steered the camera
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;

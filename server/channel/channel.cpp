@@ -60,7 +60,7 @@ void Channel::render_loop(const std::stop_token& stop) {
             continue; // the last one has just gone
         }
         const auto begin = Clock::now();
-        RenderedFrame frame = renderer_.render(++frame_id, clock_.next(begin), demand);
+        RenderedFrame frame = renderer_.render(++frame_id, next_moment(begin), demand);
         log_frame(frame);
         const std::uint64_t invalid_samples = renderer_.invalid_sample_count();
         metrics_.count_rendered(frame, invalid_samples - std::min(invalid_samples, reported_samples));
@@ -73,6 +73,15 @@ void Channel::render_loop(const std::stop_token& stop) {
         }
         wait_until(begin + interval, stop);
     }
+}
+
+FrameMoment Channel::next_moment(Clock::time_point now) {
+    FrameMoment moment = clock_.next(now);
+    if (feed_->steering() != nullptr) {
+        moment.pose = feed_->steering()->sample();
+        moment.cut = moment.cut || (moment.pose && moment.pose->cut);
+    }
+    return moment;
 }
 
 bool Channel::wait_for_demand(const std::stop_token& stop) {

@@ -26,6 +26,7 @@ public:
 
 private:
     void render_loop(const std::stop_token& stop);
+    FrameMoment next_moment(ChannelClock::TimePoint now); ///< of the frame that begins now
     bool wait_for_demand(const std::stop_token& stop); ///< false: stopped
     void encode_loop(const std::stop_token& stop);
     void log_frame(const RenderedFrame& frame) const;

@@ -9,6 +9,7 @@ fieldcast_test(server_session_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
@@ -39,6 +40,7 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
                 ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_steering_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
     fieldcast_test(server_limits_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
@@ -57,7 +59,7 @@ endif()
 fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
-    DEPENDS fieldcast_proto_grpc)
+    DEPENDS fieldcast_proto_grpc fieldcast_wire)
 target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
