@@ -260,7 +260,7 @@ protected:
 };
 
 TEST_F(SteeredServer, PosesMoveTheCameraAndThePicture) {
-    OpenCall call(connect(port_));
+    OpenCall call(connect(port_), "", kStartDeadline); // some twenty frames
     v1::Configure wanted;
     wanted.mutable_grid()->set_rows(1);
     wanted.mutable_grid()->set_cols(1);
@@ -269,7 +269,7 @@ TEST_F(SteeredServer, PosesMoveTheCameraAndThePicture) {
     ASSERT_TRUE(configured.has_value());
     assembler_.begin_epoch(configured->configured().epoch(), {});
     wire::ReceivedFrame rest = frame(call);
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 3; ++i) {
         rest = frame(call); // noise settles
     }
     EXPECT_FALSE(rest.header().applied_pose.has_value());
