@@ -31,11 +31,11 @@ constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its d
 
 using Channels = std::vector<std::unique_ptr<channel::Channel>>;
 
-Channels start_channels(const gpu::Device& device, const ops::Config& config, metrics::Registry& registry) {
+Channels start_channels(const channel::Channel::Shared& shared) {
     Channels channels;
-    for (const ops::ChannelChoice& choice : config.channels) {
+    for (const ops::ChannelChoice& choice : shared.config.channels) {
         const auto begin = Clock::now();
-        channels.push_back(std::make_unique<channel::Channel>(device, config, choice, registry));
+        channels.push_back(std::make_unique<channel::Channel>(shared, choice));
         const feed::ChannelInfo& info = channels.back()->feed()->info();
         const std::chrono::duration<double> duration = Clock::now() - begin;
         log::info("channel ready", {{"channel", info.name},
@@ -115,7 +115,9 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
     const auto registry = std::make_shared<metrics::Registry>();
-    const Channels channels = start_channels(device, config, *registry);
+    channel::DeviceTurns turns;
+    const Channels channels =
+        start_channels({.device = device, .config = config, .turns = turns, .registry = *registry});
     const auto feeds = feeds_of(channels);
     service::GrpcServer server(config.listen, feeds, config.limits, config.security, registry);
     const MetricsServer metrics_server(config, server.gate(), *registry);

@@ -31,6 +31,7 @@ fieldcast_test(server_metrics_test LABELS quick
 fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_turns_test.cpp
     DEPENDS fieldcast_server_channel)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
 # like a race. What the server's own threads share is in server_session_test.
@@ -89,3 +90,9 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
     gtest_discover_tests(envoy_test WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                          PROPERTIES LABELS system TIMEOUT 180 FIXTURES_REQUIRED envoy)
 endif()
+fieldcast_test(channels_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/channels_process_test.cpp
+    DEPENDS running_server nlohmann_json::nlohmann_json)
+add_dependencies(channels_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(channels_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
