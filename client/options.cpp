@@ -25,6 +25,8 @@ Examples:
     fieldcast-client --grid 6x6 --codec jpeg,zstd --frames 30
   A horizontal sweep for a lenticular display, with everything that can be written:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
+  Drive the camera of a channel with --camera-control steered round what it looks at:
+    fieldcast-client --grid 3x3 --steer orbit:radius=2,seconds=10 --frames 100
   A server elsewhere, with the token that its operator gave out:
     fieldcast-client --server https://fieldcast.example.org:50151 --token-file token.txt --frames 1
 
@@ -49,6 +51,8 @@ struct FlagText {
     float convergence_m = -1.0F;
     bool no_reconnect = false;
     bool no_residual = false;
+    std::string steer;
+    bool steers_now = false;
 };
 
 void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
@@ -94,6 +98,13 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
     app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
+}
+
+void add_steering_flags(CLI::App& app, FlagText& text) {
+    app.add_option("--steer", text.steer,
+                   "Move the channel's camera: orbit:radius=METRES,seconds=SECONDS, a JSON file of timed poses, or -: one "
+                   "pose a line from standard input");
+    app.add_flag("--steer-now", text.steers_now, "Fail if somebody else steers, instead of waiting for our turn");
 }
 
 void add_access_flags(CLI::App& app, net::Access& access) {
@@ -217,6 +228,9 @@ void read_text(const FlagText& text, Options& options) {
     if (options.play.products.source_exr && wish.mode != net::Mode::kScene) {
         throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
     }
+    if (!text.steer.empty()) {
+        options.play.steering = {.poses = play::read_camera_path(text.steer), .waits = !text.steers_now};
+    }
     if (wish.mode == net::Mode::kScene) {
         options.play.cache_folder = text.cache.empty() ? play::SceneCache::default_folder().string() : text.cache;
     }
@@ -233,6 +247,7 @@ Invocation read_options(int argc, const char* const* argv) {
     add_server_flags(app, text, options.play);
     add_view_flags(app, text, options.play.wish);
     add_mode_flags(app, text, options.play);
+    add_steering_flags(app, text);
     add_output_flags(app, text, options);
     try {
         app.parse(argc, argv);

@@ -55,6 +55,7 @@ private:
     void handle(const net::FrameAborted& aborted);
     void handle(const net::Refused& refused);
     void handle(const net::GoingAway& going);
+    void handle(const net::SteeringNews&) {} // it never asks to steer
     void handle(const net::Ended& ended);
     void add_stages(const net::FrameArrived& frame, Tally& tally);
     void answer_due(const net::FrameArrived& frame, Tally& tally);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/session.h"
 
+#include "client/net/printable.h"
 #include "core/wire/convert.h"
 
 #include <algorithm>
@@ -13,15 +14,6 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint32_t kRequestId = 1; // a session configures once
 constexpr std::chrono::seconds kSyncPeriod{1};
 constexpr std::uint32_t kMostFailuresInARow = 16; // then the peer does not speak our language
-constexpr std::size_t kMaxTextBytes = 1024;
-
-/// Text from outside, for people: bounded and without control characters, which terminals obey.
-std::string printable(const std::string& text) {
-    std::string result = text.substr(0, kMaxTextBytes);
-    std::replace_if(
-        result.begin(), result.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
-    return result;
-}
 
 Refused to_refused(const v1::Refused& message) {
     const bool is_transient = message.reason() == v1::REFUSAL_REASON_EXHAUSTED;
@@ -117,6 +109,12 @@ std::optional<Event> Session::handle(ReceivedMessage received) {
     case v1::ServerMessage::kGoingAway:
         return GoingAway{std::chrono::milliseconds(message.going_away().deadline_ms()),
                          printable(message.going_away().reason())};
+    case v1::ServerMessage::kSteeringGranted:
+        return to_news(message.steering_granted());
+    case v1::ServerMessage::kSteeringDenied:
+        return to_news(message.steering_denied());
+    case v1::ServerMessage::kSteeringReleased:
+        return to_news(message.steering_released());
     case v1::ServerMessage::kHeartbeat:      // its arrival is its message
     case v1::ServerMessage::MESSAGE_NOT_SET: // a kind of message newer than this program
         return std::nullopt;

@@ -4,6 +4,7 @@
 #include "client/net/clock_sync.h"
 #include "client/net/configure.h"
 #include "client/net/message_stream.h"
+#include "client/net/steering.h"
 #include "core/base/parallel.h"
 #include "core/wire/frame_assembler.h"
 
@@ -51,7 +52,7 @@ struct Ended {
     NetError error;
 };
 
-using Event = std::variant<Agreement, FrameArrived, FrameFailed, FrameAborted, Refused, GoingAway, Ended>;
+using Event = std::variant<Agreement, FrameArrived, FrameFailed, FrameAborted, Refused, GoingAway, SteeringNews, Ended>;
 
 /// What became of a frame after it was decoded.
 struct FrameReport {
@@ -66,7 +67,7 @@ struct FrameReport {
 };
 
 /// One stream with one configuration: asks, decodes, acknowledges, keeps the clocks in step. Everything that comes in
-/// is checked. `next` belongs to one thread; `report` and `half_close` may be called from any.
+/// is checked. `next` belongs to one thread; `report`, `send` and `half_close` may be called from any.
 class Session {
 public:
     struct Options {
@@ -87,6 +88,9 @@ public:
 
     /// Sends a second acknowledgement with the times that were unknown at the first. Returns no credit.
     void report(const FrameReport& report);
+
+    /// A message of steering.h.
+    void send(v1::ClientMessage message) { stream_.send(std::move(message)); }
 
     void half_close() { stream_.half_close(); }
     const ClockSync& clock() const { return clock_; } ///< for the thread that calls `next`

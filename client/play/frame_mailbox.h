@@ -16,6 +16,7 @@ struct Arrival {
     net::Agreement agreement;
     net::FrameArrived arrived;
     std::weak_ptr<net::Session> session;
+    std::optional<std::int64_t> pose_chosen_ns{}; ///< when we chose the pose that this frame is the first to show
 };
 
 /// Tells the server what became of a frame. `rendered_ns` and `shown_ns` are 0 for a superseded one.

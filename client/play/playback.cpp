@@ -132,6 +132,7 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.send_to_decoded_ms = ms_between(arrival.arrived.send_begin_ns, arrival.arrived.decoded_ns);
     frame.pose_to_decoded_ms = ms_between(arrival.arrived.pose_sampled_ns, arrival.arrived.decoded_ns);
     frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
+    frame.motion_to_photon_ms = ms_between(arrival.pose_chosen_ns, shown_ns);
     frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
     frame.render_ms = render_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
@@ -195,7 +196,7 @@ PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const
     if (options.wish.mode != net::Mode::kViews) {
         render_side = make_render_side(options, stop);
     }
-    Receiver receiver(options.server, options.wish, render_side ? render_side->hash : std::nullopt);
+    Receiver receiver(options.server, options.wish, render_side ? render_side->hash : std::nullopt, options.steering);
     Player player(options, render_side.get());
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };

@@ -18,6 +18,7 @@ enum class Save : std::uint8_t { kLast, kAll, kNone };
 struct PlayOptions {
     ServerOptions server;
     net::Wish wish;
+    std::optional<SteeringOptions> steering{}; ///< moves the camera, too
     std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
     Save save = Save::kLast;
     std::filesystem::path out = "out";

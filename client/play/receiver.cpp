@@ -33,8 +33,10 @@ struct Receiver::SessionState {
     }
 };
 
-Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash)
+Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+                   std::optional<SteeringOptions> steering)
     : server_(server), wish_(wish), scene_hash_(scene_hash),
+      pilot_(steering ? std::optional<Pilot>(std::move(*steering)) : std::nullopt),
       pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -76,8 +78,12 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
     state.attempts = &attempts;
     state.session = std::make_shared<net::Session>(connection, wish_, pool_);
     while (!state.end) {
-        if (auto event = state.session->next(Clock::now() + kLookAtStop)) {
+        const auto look_at = Clock::now() + kLookAtStop;
+        if (auto event = state.session->next(pilot_ ? std::min(look_at, pilot_->next_call()) : look_at)) {
             handle(std::move(*event), state);
+        }
+        if (pilot_) {
+            pilot_->look(*state.session, Clock::now());
         }
         if (stop.stop_requested() && !state.cut_at) {
             state.leave(kFinishGrace);
@@ -104,6 +110,7 @@ void Receiver::handle(net::Event event, SessionState& state) {
                               log::info("server is going away", {{"reason", going.reason}});
                               state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
                           },
+                          [&](net::SteeringNews& news) { steered(news, state); },
                           [&](net::Ended& ended) {
                               const std::string message = ended.error.what();
                               state.end = SessionEnd{message.empty() ? "the server finished" : message,
@@ -123,12 +130,25 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
     ++counts_.lock()->sessions;
     log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
     state.agreement = std::move(agreement);
+    if (pilot_) {
+        pilot_->begin(*state.session);
+    }
+}
+
+void Receiver::steered(const net::SteeringNews& news, SessionState& state) {
+    if (!pilot_) {
+        return; // what nobody asked for
+    }
+    if (auto problem = pilot_->handle(*state.session, news, Clock::now())) {
+        state.end = SessionEnd{std::move(*problem), false, true};
+    }
 }
 
 void Receiver::arrived(net::FrameArrived frame, SessionState& state) {
     state.attempts->succeeded();
     log::debug("frame arrived", {{"frame", frame.frame_id}, {"bytes", frame.frame.payload_bytes}});
-    if (const auto replaced = mailbox_.put({*state.agreement, std::move(frame), state.session})) {
+    const auto chosen_ns = pilot_ ? pilot_->chosen_ns(frame.frame.header()) : std::nullopt;
+    if (const auto replaced = mailbox_.put({*state.agreement, std::move(frame), state.session, chosen_ns})) {
         ++counts_.lock()->superseded;
         report_times(*replaced, true, 0, 0);
     }

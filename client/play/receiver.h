@@ -4,6 +4,7 @@
 #include "client/net/session.h"
 #include "client/play/attempts.h"
 #include "client/play/frame_mailbox.h"
+#include "client/play/pilot.h"
 #include "client/play/statistics.h"
 
 #include <chrono>
@@ -32,7 +33,9 @@ struct Failure {
 class Receiver {
 public:
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
-    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash);
+    /// `steering`: moves the camera, too.
+    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+             std::optional<SteeringOptions> steering = std::nullopt);
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
@@ -57,10 +60,12 @@ private:
     void handle(net::Event event, SessionState& state);
     void agreed(net::Agreement agreement, SessionState& state);
     void arrived(net::FrameArrived frame, SessionState& state);
+    void steered(const net::SteeringNews& news, SessionState& state);
 
     ServerOptions server_;
     net::Wish wish_;
     std::optional<scene::SceneHash> scene_hash_;
+    std::optional<Pilot> pilot_; ///< for the thread
     WorkerPool pool_;
     FrameMailbox mailbox_;
     Guarded<StreamCounts> counts_;

@@ -95,6 +95,9 @@ Summary summarise(const std::vector<ShownFrame>& frames, const StreamCounts& cou
     summary.send_to_decoded_ms = percentiles(known(frames, &ShownFrame::send_to_decoded_ms));
     summary.pose_to_decoded_ms = percentiles(known(frames, &ShownFrame::pose_to_decoded_ms));
     summary.pose_to_shown_ms = percentiles(known(frames, &ShownFrame::pose_to_shown_ms));
+    const std::vector<double> motion_ms = known(frames, &ShownFrame::motion_to_photon_ms);
+    summary.poses_shown = motion_ms.size();
+    summary.motion_to_photon_ms = percentiles(motion_ms);
     summary.decode_ms = percentiles(known(frames, &ShownFrame::decode_ms)).value_or(Percentiles{});
     summary.render_ms = percentiles(known(frames, &ShownFrame::render_ms)).value_or(Percentiles{});
     summary.out_of_frustum_percent = percent(frames, &ShownFrame::out_of_frustum);
@@ -117,6 +120,10 @@ std::string to_table(const Summary& s) {
     table += latency_line("latency, sent", s.send_to_decoded_ms);
     table += latency_line("latency, pose", s.pose_to_decoded_ms);
     table += latency_line("pose to shown", s.pose_to_shown_ms);
+    if (s.motion_to_photon_ms) {
+        table += latency_line("motion to photon", s.motion_to_photon_ms);
+        table += line("%-20s %llu of ours\n", "poses shown", number(s.poses_shown));
+    }
     table += latency_line("decoding", s.decode_ms);
     table += latency_line("making views", s.render_ms);
     table += line("%-20s %.2f %% (out of frustum %.2f, id %.2f, plane %.2f, normal %.2f)\n", "discards",
@@ -138,6 +145,8 @@ std::string to_json(const Summary& s) {
     json["send_to_decoded_ms"] = to_json(s.send_to_decoded_ms);
     json["pose_to_decoded_ms"] = to_json(s.pose_to_decoded_ms);
     json["pose_to_shown_ms"] = to_json(s.pose_to_shown_ms);
+    json["motion_to_photon_ms"] = to_json(s.motion_to_photon_ms);
+    json["poses_shown"] = s.poses_shown;
     json["decode_ms"] = to_json(std::optional(s.decode_ms));
     json["render_ms"] = to_json(std::optional(s.render_ms));
     json["discarded_percent"] = s.discarded_percent;

@@ -17,6 +17,7 @@ struct ShownFrame {
     std::optional<double> send_to_decoded_ms;
     std::optional<double> pose_to_decoded_ms;
     std::optional<double> pose_to_shown_ms;
+    std::optional<double> motion_to_photon_ms; ///< from choosing a pose to showing the first frame that has it
     double decode_ms = 0.0;
     double render_ms = 0.0; ///< making the views; 0 when they were received
     std::int64_t shown_ns = 0;
@@ -55,6 +56,8 @@ struct Summary {
     std::optional<Percentiles> send_to_decoded_ms;
     std::optional<Percentiles> pose_to_decoded_ms;
     std::optional<Percentiles> pose_to_shown_ms;
+    std::optional<Percentiles> motion_to_photon_ms; ///< of poses that we chose
+    std::uint64_t poses_shown = 0;                   ///< likewise
     Percentiles decode_ms;
     Percentiles render_ms;
     double discarded_percent = 0.0; ///< of all pixels of all views

@@ -7,6 +7,7 @@
 #include "core/lightfield/residual_layer.h"
 #include "core/lightfield/view_grid.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,15 @@ struct StageTime {
     double ms = 0.0;
 
     bool operator==(const StageTime&) const = default;
+};
+
+/// The pose that a client chose and a frame shows.
+struct AppliedPose {
+    std::uint64_t lease = 0;         ///< of who steers, > 0
+    std::uint64_t sequence = 0;      ///< within the lease
+    std::int64_t client_time_ns = 0; ///< when it was chosen, on that client's steady clock
+
+    bool operator==(const AppliedPose&) const = default;
 };
 
 inline constexpr std::uint32_t kMaxLayers = 2;
@@ -45,6 +55,7 @@ struct FrameHeader {
     /// Step of planes that hold inverse depth, 1/m; 0: there are none.
     float inverse_depth_unit = 0.0F;
     ResidualLayer residual; ///< of planes kResidual…
+    std::optional<AppliedPose> applied_pose; ///< that `source` follows; empty: nobody has steered the camera
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;

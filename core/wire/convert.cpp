@@ -66,22 +66,31 @@ void to_proto(const Camera& camera, v1::PinholeCamera& message) {
     message.set_height_px(camera.height_px);
 }
 
-Decoded<Camera> from_proto(const v1::PinholeCamera& message) {
-    if (message.world_from_camera_size() != kCameraFloats) {
-        return decode_error("camera.world_from_camera: " + std::to_string(message.world_from_camera_size()) +
-                            " values, not 12");
+Decoded<glm::mat4> pose_from_proto(const google::protobuf::RepeatedField<float>& values) {
+    if (values.size() != kCameraFloats) {
+        return decode_error("camera.world_from_camera: " + std::to_string(values.size()) + " values, not 12");
     }
-    Camera camera;
+    glm::mat4 pose(1.0F);
     for (int i = 0; i < kCameraFloats; ++i) {
-        const float value = message.world_from_camera(i);
+        const float value = values[i];
         if (!(std::abs(value) <= kMaxPositionM)) {
             return decode_error("camera.world_from_camera: not finite or beyond 1e9 m");
         }
-        camera.world_from_camera[i / 3][i % 3] = value;
+        pose[i / 3][i % 3] = value;
     }
-    if (!is_rigid(camera.world_from_camera)) {
+    if (!is_rigid(pose)) {
         return decode_error("camera.world_from_camera: not a rotation");
     }
+    return pose;
+}
+
+Decoded<Camera> from_proto(const v1::PinholeCamera& message) {
+    const auto pose = pose_from_proto(message.world_from_camera());
+    if (!pose) {
+        return tl::unexpected(pose.error());
+    }
+    Camera camera;
+    camera.world_from_camera = *pose;
     camera.focal_px = message.focal_px();
     camera.principal_px = {message.principal_x_px(), message.principal_y_px()};
     if (!(camera.focal_px > 0.0F && camera.focal_px <= kMaxPixels)) {
@@ -283,6 +292,22 @@ Decoded<ResidualLayer> residual_from_proto(const v1::ResidualLayer& message, con
     return ResidualLayer{std::move(read.source_positions), read.source_geometry, std::move(*tiles)};
 }
 
+void applied_pose_to_proto(const FrameHeader& header, v1::FrameHeader& message) {
+    if (header.applied_pose) {
+        v1::AppliedPose& applied = *message.mutable_applied_pose();
+        applied.set_lease(header.applied_pose->lease);
+        applied.set_sequence(header.applied_pose->sequence);
+        applied.set_client_time_ns(header.applied_pose->client_time_ns);
+    }
+}
+
+std::optional<AppliedPose> applied_pose_from_proto(const v1::FrameHeader& message) {
+    const v1::AppliedPose& applied = message.applied_pose();
+    return message.has_applied_pose()
+               ? std::optional(AppliedPose{applied.lease(), applied.sequence(), applied.client_time_ns()})
+               : std::nullopt;
+}
+
 } // namespace
 
 void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
@@ -300,6 +325,7 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     if (!header.residual.positions.empty()) {
         residual_to_proto(header.residual, *message.mutable_residual());
     }
+    applied_pose_to_proto(header, message);
     message.clear_render_times();
     for (const StageTime& stage : header.render_times) {
         v1::StageTime& entry = *message.add_render_times();
@@ -330,6 +356,10 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
     }
     header.layer_count = message.layer_count();
     header.still_frames = message.still_frames();
+    if (message.has_applied_pose() && message.applied_pose().lease() == 0) {
+        return decode_error("header.applied_pose.lease: 0, expected more");
+    }
+    header.applied_pose = applied_pose_from_proto(message);
     if (message.has_sources()) {
         if (const auto read = sources_from_proto(message.sources(), header); !read) {
             return tl::unexpected(read.error());

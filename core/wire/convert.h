@@ -10,6 +10,8 @@
 #include "fieldcast/v1/frame.pb.h"
 #include "fieldcast/v1/types.pb.h"
 
+#include <google/protobuf/repeated_field.h>
+
 // Protobuf messages <-> our types, in this one place. `from_proto` checks every field: enums known, numbers finite and
 // in the range that the proto file states. Errors name the field.
 namespace fieldcast::wire {
@@ -20,6 +22,8 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
 
 void to_proto(const Camera& camera, v1::PinholeCamera& message);
 Decoded<Camera> from_proto(const v1::PinholeCamera& message);
+/// Of 12 values, as PinholeCamera.world_from_camera.
+Decoded<glm::mat4> pose_from_proto(const google::protobuf::RepeatedField<float>& values);
 
 void to_proto(const GuardBand& band, v1::GuardBand& message);
 Decoded<GuardBand> from_proto(const v1::GuardBand& message);

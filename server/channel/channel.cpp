@@ -37,10 +37,10 @@ template <class Work> void run(feed::Feed& feed, const Work& work) {
 
 } // namespace
 
-Channel::Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice,
-                 metrics::Registry& registry)
-    : renderer_(device, config, choice), clock_(config, renderer_.scene()),
-      feed_(std::make_shared<feed::Feed>(renderer_.info())), metrics_(registry, feed_->info().name),
+Channel::Channel(const Shared& shared, const ops::ChannelChoice& choice)
+    : renderer_(shared.device, shared.config, choice), clock_(shared.config, renderer_.scene()),
+      feed_(std::make_shared<feed::Feed>(renderer_.info())), metrics_(shared.registry, feed_->info().name),
+      place_(shared.turns),
       encode_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { encode_loop(stop); }); }),
       render_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { render_loop(stop); }); }) {}
 
@@ -60,19 +60,44 @@ void Channel::render_loop(const std::stop_token& stop) {
             continue; // the last one has just gone
         }
         const auto begin = Clock::now();
-        RenderedFrame frame = renderer_.render(++frame_id, clock_.next(begin), demand);
-        log_frame(frame);
+        std::optional<RenderedFrame> frame = render_in_turn(++frame_id, demand, stop);
+        if (!frame) {
+            return;
+        }
+        log_frame(*frame);
         const std::uint64_t invalid_samples = renderer_.invalid_sample_count();
-        metrics_.count_rendered(frame, invalid_samples - std::min(invalid_samples, reported_samples));
+        metrics_.count_rendered(*frame, invalid_samples - std::min(invalid_samples, reported_samples));
         if (invalid_samples > reported_samples) {
             log::warn("invalid samples", {{"channel", feed_->info().name}, {"count", invalid_samples}});
             reported_samples = invalid_samples;
         }
-        if (!rendered_.put(std::move(frame), stop)) {
+        if (!rendered_.put(std::move(*frame), stop)) {
             return;
         }
         wait_until(begin + interval, stop);
     }
+}
+
+std::optional<RenderedFrame> Channel::render_in_turn(std::uint64_t frame_id, const feed::Demand& demand,
+                                                     const std::stop_token& stop) {
+    const auto asked = Clock::now();
+    const auto turn = place_.wait(stop);
+    if (!turn) {
+        return std::nullopt;
+    }
+    const auto begin = Clock::now();
+    RenderedFrame frame = renderer_.render(frame_id, next_moment(begin), demand);
+    metrics_.observe_turn({.waited = begin - asked, .used = Clock::now() - begin});
+    return frame;
+}
+
+FrameMoment Channel::next_moment(Clock::time_point now) {
+    FrameMoment moment = clock_.next(now);
+    if (feed_->steering() != nullptr) {
+        moment.pose = feed_->steering()->sample();
+        moment.cut = moment.cut || (moment.pose && moment.pose->cut);
+    }
+    return moment;
 }
 
 bool Channel::wait_for_demand(const std::stop_token& stop) {

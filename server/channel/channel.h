@@ -3,11 +3,13 @@
 
 #include "server/channel/channel_clock.h"
 #include "server/channel/channel_metrics.h"
+#include "server/channel/device_turns.h"
 #include "server/channel/frame_renderer.h"
 #include "server/channel/handoff.h"
 #include "server/feed/feed.h"
 
 #include <memory>
+#include <optional>
 #include <thread>
 
 namespace fieldcast::channel {
@@ -16,16 +18,27 @@ namespace fieldcast::channel {
 /// One thread renders, one encodes and publishes the frame before; neither ever waits for a client.
 class Channel {
 public:
-    /// Ready to serve when constructed; rendering starts with the first subscriber. `device`, `config` and
-    /// `registry` must outlive it. Throws UserError if the scene is not usable.
-    Channel(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& choice,
-            metrics::Registry& registry);
+    /// What all channels of a server share.
+    struct Shared {
+        const gpu::Device& device;
+        const ops::Config& config;
+        DeviceTurns& turns; ///< at `device`
+        metrics::Registry& registry;
+    };
+
+    /// Ready to serve when constructed; rendering starts with the first subscriber. What `shared` refers to must
+    /// outlive it. Throws UserError if the scene is not usable.
+    Channel(const Shared& shared, const ops::ChannelChoice& choice);
     ~Channel();
 
     const std::shared_ptr<feed::Feed>& feed() const { return feed_; }
 
 private:
     void render_loop(const std::stop_token& stop);
+    /// Waits for the device. Empty: stopped.
+    std::optional<RenderedFrame> render_in_turn(std::uint64_t frame_id, const feed::Demand& demand,
+                                                const std::stop_token& stop);
+    FrameMoment next_moment(ChannelClock::TimePoint now); ///< of the frame that begins now
     bool wait_for_demand(const std::stop_token& stop); ///< false: stopped
     void encode_loop(const std::stop_token& stop);
     void log_frame(const RenderedFrame& frame) const;
@@ -34,6 +47,7 @@ private:
     ChannelClock clock_;
     std::shared_ptr<feed::Feed> feed_;
     ChannelMetrics metrics_;
+    DevicePlace place_;
     Handoff<RenderedFrame> rendered_;
     std::jthread encode_thread_;
     std::jthread render_thread_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "server/feed/steering.h"
 #include "server/ops/config.h"
 
 #include <chrono>
@@ -15,6 +16,7 @@ struct FrameMoment {
     std::int64_t scene_time_ns = 0;
     bool cut = false;
     std::uint32_t noise_frame = 0; ///< FrameHeader::noise_frame
+    std::optional<feed::SteeredPose> pose{}; ///< where a client wants the camera
 };
 
 /// Scene time of one channel. Starts at 0 with the first frame.

@@ -40,7 +40,8 @@ void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
 void ChannelList::start_channels(const ops::Config& config, metrics::Registry& registry) {
     for (const ops::ChannelChoice& choice : config.channels) {
         const auto begin = Clock::now();
-        channels_.push_back(std::make_unique<Channel>(*device_, config, choice, registry));
+        channels_.push_back(std::make_unique<Channel>(
+            Channel::Shared{.device = *device_, .config = config, .turns = turns_, .registry = registry}, choice));
         add_feed(channels_.back()->feed());
         const feed::ChannelInfo& info = feeds_.back()->info();
         log::info("channel ready", {{"channel", info.name},

@@ -29,6 +29,7 @@ private:
     void add_feed(const std::shared_ptr<feed::Feed>& feed);
 
     std::optional<gpu::Device> device_;
+    DeviceTurns turns_; ///< at the device
     std::vector<std::shared_ptr<feed::Feed>> feeds_;
     std::vector<std::unique_ptr<Channel>> channels_;
     std::vector<std::unique_ptr<recording::Replay>> replays_;

@@ -24,7 +24,11 @@ ChannelMetrics::ChannelMetrics(metrics::Registry& registry, const std::string& c
       render_(registry.histogram({"fieldcast_render_seconds", "Wall time of rendering a frame with all its views."},
                                  {{"channel", channel}}, metrics::second_bounds())),
       encode_(registry.histogram({"fieldcast_encode_seconds", "Wall time of encoding a frame in all its forms."},
-                                 {{"channel", channel}}, metrics::second_bounds())) {
+                                 {{"channel", channel}}, metrics::second_bounds())),
+      turn_wait_(registry.histogram({"fieldcast_device_wait_seconds", "Wall time before a frame had the device."},
+                                    {{"channel", channel}}, metrics::second_bounds())),
+      turn_(registry.histogram({"fieldcast_device_seconds", "Wall time in which a frame had the device for itself."},
+                               {{"channel", channel}}, metrics::second_bounds())) {
     for (const char* const reason : {"out_of_frustum", "id", "plane", "normal"}) {
         hole_pixels_[reason] = &registry.counter(kHoles, {{"channel", channel}, {"reason", reason}});
     }
@@ -62,6 +66,11 @@ void ChannelMetrics::count_rendered(const RenderedFrame& frame, std::uint64_t in
             hole_pixels_.at("normal")->add(view.discards.normal);
         }
     }
+}
+
+void ChannelMetrics::observe_turn(const Turn& turn) {
+    turn_wait_.observe(turn.waited.count());
+    turn_.observe(turn.used.count());
 }
 
 void ChannelMetrics::observe_encoding(std::chrono::duration<double> seconds) {

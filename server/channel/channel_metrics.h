@@ -16,6 +16,12 @@ public:
     ChannelMetrics(metrics::Registry& registry, const std::string& channel);
 
     void count_rendered(const RenderedFrame& frame, std::uint64_t invalid_samples); ///< samples: of this frame
+    /// Of the device, which channels share.
+    struct Turn {
+        std::chrono::duration<double> waited; ///< until it began
+        std::chrono::duration<double> used;
+    };
+    void observe_turn(const Turn& turn);
     void observe_encoding(std::chrono::duration<double> seconds);
 
 private:
@@ -30,6 +36,8 @@ private:
     std::map<std::string, metrics::Counter*> hole_pixels_; ///< by reason
     metrics::Histogram& render_;
     metrics::Histogram& encode_;
+    metrics::Histogram& turn_wait_;
+    metrics::Histogram& turn_;
     std::map<std::string, metrics::Histogram*> stages_; ///< seen so far, by name
 };
 

@@ -16,7 +16,7 @@ FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& confi
     : device_(device), config_(config), settings_(config.settings) {
     info_.name = channel.name;
     load(channel);
-    settle_lattice();
+    settle_lattice(channel);
     limit_views();
     settle_guard_band();
     warm_up();
@@ -43,7 +43,7 @@ void FrameRenderer::load(const ops::ChannelChoice& channel) {
     grid_renderer_ = std::make_unique<render::GridRenderer>(device_, *gpu_scene_);
 }
 
-void FrameRenderer::settle_lattice() {
+void FrameRenderer::settle_lattice(const ops::ChannelChoice& choice) {
     const bool is_node_animated = scene_->nodes[camera_node_->node].is_animated;
     info_.source_width_px = config_.width_px;
     info_.source_height_px = config_.height_px;
@@ -51,7 +51,10 @@ void FrameRenderer::settle_lattice() {
     info_.fovy_rad = camera_node_->fovy_rad;
     info_.frames_per_second = config_.frames_per_second;
     info_.camera = camera_node_->name;
-    info_.is_camera_animated = is_node_animated && !config_.has_fixed_camera && !config_.fixed_time_s;
+    const bool is_scripted = is_node_animated && !config_.has_fixed_camera && !config_.fixed_time_s;
+    info_.control = is_scripted ? feed::CameraControl::kScripted : feed::CameraControl::kFixed;
+    info_.control = choice.control.value_or(info_.control);
+    info_.steering_lease = config_.steering_lease;
     info_.max_view_pixels = config_.max_channel_pixels;
     info_.lossy_quality = static_cast<std::uint8_t>(config_.lossy_quality);
     info_.largest_grid = config_.largest_grid;
@@ -80,7 +83,7 @@ void FrameRenderer::settle_guard_band() {
     const auto start_ns = static_cast<std::int64_t>(config_.fixed_time_s.value_or(0.0) * 1e9);
     gpu_scene_->pose(start_ns, true);
     const Camera source = render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
-    if (config_.has_fixed_camera) {
+    if (config_.has_fixed_camera || info_.control == feed::CameraControl::kSteered) {
         fixed_camera_ = source;
     }
     info_.guard_band = config_.guard_band;

@@ -75,6 +75,10 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
     header.source = fixed_camera_
                         ? *fixed_camera_
                         : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
+    if (moment.pose) {
+        header.applied_pose = AppliedPose{moment.pose->lease, moment.pose->sequence, moment.pose->client_time_ns};
+        header.source.world_from_camera = moment.pose->world_from_camera;
+    }
     header.guard_band = info_.guard_band;
     header.source_positions = config_.source_positions;
     header.source_geometry = info_.largest_grid.geometry;

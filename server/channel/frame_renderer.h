@@ -62,7 +62,7 @@ public:
 
 private:
     void load(const ops::ChannelChoice& channel);
-    void settle_lattice();
+    void settle_lattice(const ops::ChannelChoice& choice);
     void limit_views();
     void settle_guard_band();
     void check_planes(const Camera& source) const;

@@ -5,6 +5,7 @@
 #include "server/feed/wish.h"
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,13 @@
 namespace fieldcast::feed {
 
 inline constexpr std::size_t kMaxChannelNameBytes = 64;
+
+/// Who moves the camera of a channel.
+enum class CameraControl : std::uint8_t {
+    kFixed,
+    kScripted, ///< the animation of a camera node of the scene
+    kSteered,  ///< one client at a time
+};
 
 /// Facts about a channel, fixed when it starts.
 struct ChannelInfo {
@@ -27,7 +35,8 @@ struct ChannelInfo {
     float frames_per_second = 30.0F;           ///< at most
     GuardBand guard_band;
     std::string camera;                                   ///< name of the camera node
-    bool is_camera_animated = false;                      ///< false: it stays where it is
+    CameraControl control = CameraControl::kFixed;
+    std::chrono::milliseconds steering_lease{5'000};      ///< kSteered: without a sign of life of who steers
     std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
     std::uint8_t lossy_quality = 75;                      ///< of planes in a lossy codec, if the client does not say
     std::uint64_t max_view_pixels = 0;                    ///< of all views of a frame, over all clients

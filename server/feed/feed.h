@@ -4,6 +4,7 @@
 #include "core/base/guarded.h"
 #include "server/feed/channel_info.h"
 #include "server/feed/encoded_frame.h"
+#include "server/feed/steering.h"
 
 #include <atomic>
 #include <chrono>
@@ -35,9 +36,15 @@ class Subscription;
 /// All subscribers of one channel, and what they want. Thread-safe.
 class Feed {
 public:
-    explicit Feed(ChannelInfo info) : info_(std::move(info)) {}
+    explicit Feed(ChannelInfo info)
+        : info_(std::move(info)), steering_(info_.control == CameraControl::kSteered
+                                                ? std::make_shared<Steering>(info_.steering_lease)
+                                                : nullptr) {}
 
     const ChannelInfo& info() const { return info_; }
+
+    /// Null: nobody steers the camera of this channel.
+    const std::shared_ptr<Steering>& steering() const { return steering_; }
 
     /// Refused, with a reason that names the limit, if the views of all subscribers would exceed the pixel budget.
     static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
@@ -81,6 +88,7 @@ private:
     void remove(std::uint64_t id);
 
     const ChannelInfo info_;
+    const std::shared_ptr<Steering> steering_;
     std::atomic<bool> has_failed_ = false;
     std::condition_variable demand_changed_;
     Guarded<State> state_;

@@ -5,6 +5,7 @@
 #include "core/lightfield/camera.h"
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
+#include "server/feed/channel_info.h"
 #include "server/recording/form.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
@@ -22,6 +23,7 @@ namespace fieldcast::ops {
 struct ChannelChoice {
     std::string name;
     std::filesystem::path scene;
+    std::optional<feed::CameraControl> control{}; ///< unset: kScripted if the camera node moves, else kFixed
 };
 
 /// A channel to record while it is served.
@@ -48,6 +50,7 @@ struct Config {
     std::optional<glm::vec3> sky; ///< linear radiance; unset: the loader's default
     std::string camera;           ///< name of a camera node; empty: "LightField", else the first
     bool has_fixed_camera = false;
+    std::chrono::milliseconds steering_lease{5'000}; ///< of steered cameras, without a sign of life of who steers
     std::optional<double> fixed_time_s; ///< freezes the scene at that moment
     ClockMode clock = ClockMode::kReal;
     std::uint32_t loop_frames = 0; ///< ClockMode::kFrames: start again after so many; 0: never

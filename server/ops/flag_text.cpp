@@ -3,6 +3,7 @@
 
 #include "core/lightfield/presets.h"
 #include "core/lightfield/sources.h"
+#include "server/ops/camera_flags.h"
 
 #include <algorithm>
 #include <array>
@@ -216,6 +217,7 @@ void apply_preset(FlagText& text, Config& config) {
 void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_preset(text, problems);
     read_channels(text, config, problems);
+    read_camera_controls(text, config, problems);
     read_sky(text, config, problems);
     read_guard_band(text, config, problems);
     read_lattice(text, config, problems);

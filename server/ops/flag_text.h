@@ -13,6 +13,8 @@ namespace fieldcast::ops {
 struct FlagText {
     std::vector<std::string> scenes;
     std::vector<std::string> channels; ///< NAME=FILE
+    std::vector<std::string> camera_controls; ///< CONTROL, or NAME=CONTROL
+    double steering_lease_s = 5.0;
     std::string environment;
     std::string sky; ///< R,G,B
     std::string size = "1280x720";

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/lightfield/presets.h"
+#include "server/ops/camera_flags.h"
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
 #include "server/ops/health_flags.h"
@@ -250,6 +251,7 @@ struct CommandLine {
             ->expected(1)
             ->configurable(false);
         add_scene_flags(app, text, config);
+        add_camera_flags(app, text);
         add_image_flags(app, text, config);
         add_render_flags(app, text, config);
         add_serving_flags(app, text, config);

@@ -34,6 +34,7 @@ void add_limit_flags(CLI::App& app, Config& config) {
         "Sessions that one address may open on average; --max-sessions-per-peer of them at once");
     add("--max-messages-per-second", limits.max_messages_per_second,
         "Of one session on average, twice as many at once; a Configure counts as 50");
+    add("--max-poses-per-second", limits.max_poses_per_second, "Of one session that steers, on average; as many at once");
     add("--max-channel-pixels", config.max_channel_pixels, "Of all views of one frame of a channel, over all clients");
     add("--max-pixels-per-peer", limits.max_pixels_per_peer, "Of all views that the server makes for one address");
     add("--max-bytes-in-flight", limits.max_bytes_in_flight, "Unacknowledged, of one session");
@@ -63,6 +64,7 @@ std::vector<std::string> limit_problems(const Config& config) {
     expect_amount("--max-bytes-in-flight-in-total", limits.max_bytes_in_flight_in_total);
     expect(problems, "--max-opens-per-second-per-peer", limits.max_opens_per_second_per_peer, 0.01, kMaxRate);
     expect(problems, "--max-messages-per-second", limits.max_messages_per_second, 50.0, kMaxRate);
+    expect(problems, "--max-poses-per-second", limits.max_poses_per_second, 1.0, kMaxRate);
     return problems;
 }
 

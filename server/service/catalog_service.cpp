@@ -29,6 +29,18 @@ v1::ServerLimits limits_message(const std::vector<std::shared_ptr<feed::Feed>>& 
     return message;
 }
 
+v1::CameraControl to_proto(feed::CameraControl control) {
+    switch (control) {
+    case feed::CameraControl::kFixed:
+        return v1::CAMERA_CONTROL_FIXED;
+    case feed::CameraControl::kScripted:
+        return v1::CAMERA_CONTROL_SCRIPTED;
+    case feed::CameraControl::kSteered:
+        return v1::CAMERA_CONTROL_STEERED;
+    }
+    return v1::CAMERA_CONTROL_UNSPECIFIED;
+}
+
 v1::Channel channel_message(const feed::ChannelInfo& info) {
     v1::Channel message;
     message.set_name(info.name);
@@ -40,7 +52,7 @@ v1::Channel channel_message(const feed::ChannelInfo& info) {
     message.set_frames_per_second(info.frames_per_second);
     v1::ChannelCamera& camera = *message.add_cameras();
     camera.set_name(info.camera);
-    camera.set_control(info.is_camera_animated ? v1::CAMERA_CONTROL_SCRIPTED : v1::CAMERA_CONTROL_FIXED);
+    camera.set_control(to_proto(info.control));
     wire::to_proto(info.guard_band, *message.mutable_guard_band());
     return message;
 }

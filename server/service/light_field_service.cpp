@@ -22,6 +22,24 @@ public:
 
 constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // refused peers must not fill the disk
 
+feed::SteeringRight right_of(access::Role role) {
+    switch (role) {
+    case access::Role::kView:
+        break;
+    case access::Role::kSteer:
+        return feed::SteeringRight::kSteer;
+    case access::Role::kAdmin:
+        return feed::SteeringRight::kTake;
+    }
+    return feed::SteeringRight::kNone;
+}
+
+/// Others see the name of the token, or, without tokens, which session it is.
+feed::Steerer steerer_of(const access::Identity& identity, std::uint64_t session) {
+    return {.name = identity.name.empty() ? "session " + std::to_string(session) : identity.name,
+            .right = right_of(identity.role)};
+}
+
 using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 
 } // namespace
@@ -84,6 +102,7 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     const auto stream = Stream::open(*context, {.channels = channels_,
                                                 .limits = limits_,
                                                 .budgets = admission->budgets,
+                                                .steerer = steerer_of(*identity, id),
                                                 .metrics = &metrics_,
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});

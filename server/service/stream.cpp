@@ -31,7 +31,7 @@ void Stream::begin() {
                 stream->take_frame(frame);
             }
         },
-        Clock::now(), setup_.budgets);
+        Clock::now(), setup_.budgets, setup_.steerer);
     pump();
 }
 

@@ -33,6 +33,7 @@ public:
         std::vector<std::shared_ptr<feed::Feed>> channels;
         session::Limits limits;
         session::PeerBudgets budgets;
+        feed::Steerer steerer;                      ///< what it may do with cameras
         ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`

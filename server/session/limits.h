@@ -20,6 +20,7 @@ struct Limits {
     std::uint32_t max_scene_downloads = 16;
     std::uint32_t max_scene_downloads_per_peer = 4;
     double max_messages_per_second = 1000.0; ///< of one session, on average; twice as many at once
+    double max_poses_per_second = 240.0;     ///< of one session, on average; as many at once
     std::uint32_t max_chunk_bytes = 2U << 20;
     std::chrono::milliseconds configure_deadline{10'000}; ///< from opening to the first Configured
     std::chrono::milliseconds stall_deadline{30'000};     ///< a frame unacknowledged, or a message unsent

@@ -34,12 +34,13 @@ std::uint64_t made_pixels(const Configuration& configuration) {
 } // namespace
 
 Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
-                 TimePoint now, const PeerBudgets& budgets)
+                 TimePoint now, const PeerBudgets& budgets, feed::Steerer steerer)
     : channels_(std::move(channels)), limits_(limits), on_frame_(std::move(on_frame)),
       credits_(1.0, limits.max_bytes_in_flight), bytes_(budgets.bytes), pixels_(budgets.pixels),
       messages_({.per_second = limits.max_messages_per_second, .burst = 2.0 * limits.max_messages_per_second}),
       next_heartbeat_(now + limits.heartbeat_interval),
-      configure_by_(now + limits.configure_deadline) {}
+      configure_by_(now + limits.configure_deadline),
+      steering_(std::move(steerer), limits.max_poses_per_second) {}
 
 void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
     is_flooded_ = is_flooded_ || is_too_much(message, now);
@@ -48,7 +49,7 @@ void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
     }
     switch (message.message_case()) {
     case v1::ClientMessage::kConfigure:
-        return handle(message.configure());
+        return handle(message.configure(), now);
     case v1::ClientMessage::kFrameAck:
         return handle(message.frame_ack(), now);
     case v1::ClientMessage::kTimeSync: {
@@ -57,6 +58,14 @@ void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
         answer.set_server_receive_ns(nanoseconds_of(now));
         return;
     }
+    case v1::ClientMessage::kRequestSteering:
+        return steering_.handle(message.request_steering(), now);
+    case v1::ClientMessage::kSteerCamera:
+        return steering_.handle(message.steer_camera(), now);
+    case v1::ClientMessage::kReleaseSteering:
+        return steering_.release(now);
+    case v1::ClientMessage::kOfferSteering:
+        return steering_.offer(now);
     case v1::ClientMessage::MESSAGE_NOT_SET:
         return; // a kind that a newer client knows
     }
@@ -71,7 +80,7 @@ bool Session::is_too_much(const v1::ClientMessage& message, TimePoint now) {
     return false;
 }
 
-void Session::handle(const v1::Configure& wanted) {
+void Session::handle(const v1::Configure& wanted, TimePoint now) {
     auto chosen = negotiate(wanted, channels_, limits_);
     std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
     if (refusal) {
@@ -87,6 +96,7 @@ void Session::handle(const v1::Configure& wanted) {
     ++epoch_;
     *answers_.emplace_back().mutable_configured() =
         to_message(*configuration_, wanted.request_id(), epoch_, credits_.limit());
+    steering_.move_to(configuration_->feed->steering(), now);
 }
 
 std::optional<Refusal> Session::admit(const Configuration& wanted) {
@@ -121,6 +131,7 @@ std::optional<std::string> Session::subscribe(const Configuration& wanted) {
 }
 
 void Session::end() {
+    steering_.leave();
     subscription_.end();
     pixels_.resize(0);
     bytes_.resize(0);
@@ -223,6 +234,9 @@ std::optional<wire::WireChunk> Session::next_control(TimePoint now) {
         }
         return control_chunk(answer);
     }
+    if (auto news = steering_.next(now)) {
+        return control_chunk(*news);
+    }
     if (departure_ && now >= departure_->at) {
         return control_chunk(depart(now));
     }
@@ -242,6 +256,7 @@ v1::ServerMessage Session::depart(TimePoint now) {
     going_away.set_deadline_ms(static_cast<std::uint32_t>(limits_.going_away_deadline.count()));
     departure_.reset();
     cut_at_ = now + limits_.going_away_deadline;
+    steering_.leave();
     subscription_.end();
     pixels_.resize(0);
     if (mailbox_.take()) {

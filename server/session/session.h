@@ -8,6 +8,7 @@
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
 #include "server/session/session_counts.h"
+#include "server/session/steering_desk.h"
 
 #include <deque>
 #include <optional>
@@ -23,13 +24,13 @@ class Session {
 public:
     /// `channels` must not be empty. `on_frame` must lead to Session::on_frame; it may come from any thread.
     Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
-            TimePoint now, const PeerBudgets& budgets = {});
+            TimePoint now, const PeerBudgets& budgets = {}, feed::Steerer steerer = {});
 
     void on_message(const v1::ClientMessage& message, TimePoint now);
     void on_frame(const feed::FramePtr& frame, TimePoint now);
 
     /// False: answers are waiting; read the client's next message only when they have gone.
-    bool accepts_input() const { return answers_.size() < kMaxQueuedAnswers; }
+    bool accepts_input() const { return answers_.size() + steering_.waiting() < kMaxQueuedAnswers; }
 
     /// The next message to write, if there is one now.
     std::optional<wire::WireChunk> next(TimePoint now);
@@ -68,7 +69,7 @@ private:
         std::map<wire::PlaneChoice, std::uint64_t> plane_bytes;
     };
 
-    void handle(const v1::Configure& wanted);
+    void handle(const v1::Configure& wanted, TimePoint now);
     void handle(const v1::FrameAck& ack, TimePoint now);
     std::optional<Refusal> admit(const Configuration& wanted);
     std::optional<std::string> subscribe(const Configuration& wanted);
@@ -109,6 +110,7 @@ private:
     TimePoint configure_by_;
     TimePoint next_frame_due_{}; ///< by the client's rate cap
     SessionCounts counts_;
+    SteeringDesk steering_;
     feed::Subscription subscription_; ///< last: ends before what its callback leads to
 };
 

@@ -33,6 +33,20 @@ TEST(Options, ReadTheCommandOfTheReadme) {
     EXPECT_FALSE(invocation.options->falls_back_to_views);
 }
 
+TEST(Options, ReadHowToSteer) {
+    for (const char* const path : {"orbit", "orbit:radius=2,seconds=10", "-"}) {
+        const Invocation invocation = read({"--steer", path});
+        ASSERT_TRUE(invocation.options) << invocation.text;
+        ASSERT_TRUE(invocation.options->play.steering.has_value());
+        EXPECT_TRUE(invocation.options->play.steering->waits);
+    }
+    EXPECT_FALSE(read({"--steer", "orbit", "--steer-now"}).options->play.steering->waits);
+    EXPECT_FALSE(read({}).options->play.steering.has_value());
+    const Invocation wrong = read({"--steer", "orbit:radius=0"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.text, HasSubstr("radius"));
+}
+
 TEST(Options, ReadHowToReachAProtectedServer) {
     const Invocation invocation = read({"--server", "https://host:9", "--tls-ca", "ca.pem", "--tls-cert", "c.pem",
                                         "--tls-key", "k.pem", "--tls-name", "render1", "--token-file", "t.txt"});

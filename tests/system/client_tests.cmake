@@ -12,6 +12,7 @@ fieldcast_test(client_play_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_play_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/client_scene_cache_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/client_statistics_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_steering_test.cpp
     DEPENDS client_fake_server fieldcast_client_play)
 fieldcast_test(client_options_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/options.cpp

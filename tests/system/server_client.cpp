@@ -21,9 +21,9 @@ std::string to_string(const grpc::ByteBuffer& buffer) {
 
 /// Waits for the connection: gRPC 1.51 reads errno of `connect` after calls that may have changed it, so that now and
 /// then a connection that is merely under way counts as failed at first. Users' clients dial again.
-void prepare(grpc::ClientContext& context, const std::string& token) {
+void prepare(grpc::ClientContext& context, const std::string& token, std::chrono::seconds deadline = kCallDeadline) {
     context.set_wait_for_ready(true);
-    context.set_deadline(std::chrono::system_clock::now() + kCallDeadline);
+    context.set_deadline(std::chrono::system_clock::now() + deadline);
     if (!token.empty()) {
         context.AddMetadata("authorization", "Bearer " + token);
     }
@@ -46,9 +46,10 @@ std::shared_ptr<grpc::Channel> connect_with_small_window(int port) {
                                      arguments);
 }
 
-OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token)
+OpenCall::OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token,
+                   std::chrono::seconds deadline)
     : stub_(v1::LightField::NewStub(channel)) {
-    prepare(context_, token);
+    prepare(context_, token, deadline);
     stream_ = stub_->Open(&context_);
 }
 

@@ -26,7 +26,8 @@ std::shared_ptr<grpc::Channel> connect_with_small_window(int port);
 /// A client of LightField.Open that shows every message.
 class OpenCall {
 public:
-    explicit OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token = "");
+    explicit OpenCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& token = "",
+                      std::chrono::seconds deadline = kCallDeadline);
 
     bool send(const v1::ClientMessage& message) { return stream_->Write(message); }
     bool configure(const v1::Configure& wanted = {});

@@ -136,6 +136,19 @@ TEST(Flags, RefusesRecordingsThatCannotBe) {
     EXPECT_EQ(job.record_job.frame_count, 7U);
 }
 
+TEST(Flags, SayWhoSteersWhichCamera) {
+    const Invocation all = read({"--channel", "a=CMakeLists.txt", "--channel", "b=CMakeLists.txt", "--camera-control",
+                                 "b=scripted", "--camera-control", "steered", "--steering-lease", "1.5"});
+    EXPECT_THAT(all.problems, IsEmpty());
+    EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kSteered);
+    EXPECT_EQ(all.config.channels.at(1).control, std::nullopt) << "what is said of one channel wins";
+    EXPECT_EQ(all.config.steering_lease, std::chrono::milliseconds(1500));
+    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "c=steered"}).problems, Contains(HasSubstr("no channel")));
+    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems, Contains(HasSubstr("scripted or steered")));
+    EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "0.1"}).problems, Contains(HasSubstr("0.5 to 3600")));
+    EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "nan"}).problems, Contains(HasSubstr("--steering-lease")));
+}
+
 TEST(Flags, RefusesToListenForTheWorld) {
     for (const char* const listen : {"0.0.0.0:50151", "192.168.1.4:50151", "[::]:50151", "example.org:80"}) {
         EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("loopback"))) << listen;

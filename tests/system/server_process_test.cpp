@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server as a process: exit codes, port file, first frames of a rendered scene, signals.
+#include "core/wire/frame_assembler.h"
 #include "server_client.h"
 
 #include <csignal>
@@ -115,6 +116,8 @@ TEST(ServerProcess, WrongConfigurationExitsWithTwoAndNamesThePlace) {
 /// A server that renders small images of the demo scene.
 class RenderingServer : public testing::Test {
 protected:
+    explicit RenderingServer(const std::vector<std::string>& more_flags = {}) : server_(flags(more_flags)) {}
+
     void SetUp() override {
         while (!std::filesystem::exists(port_file_)) {
             if (server_.has_ended()) {
@@ -147,14 +150,25 @@ protected:
         return headers;
     }
 
+    std::vector<std::string> flags(const std::vector<std::string>& more) const {
+        std::vector<std::string> flags{"--scene", kScene, "--size", "64x36", "--listen", "127.0.0.1:0",
+                                       "--port-file", port_file_};
+        flags.insert(flags.end(), more.begin(), more.end());
+        return flags;
+    }
+
     const std::string port_file_ = testing::TempDir() + "server_port_" + std::to_string(getpid());
     const Clock::time_point deadline_ = Clock::now() + kStartDeadline;
-    Process server_{{"--scene", kScene, "--size", "64x36", "--clock", "frames", "--frames", "3", "--listen",
-                     "127.0.0.1:0", "--port-file", port_file_}};
+    Process server_;
     int port_ = 0;
 };
 
-TEST_F(RenderingServer, SendsBothModesAndDrains) {
+class LoopingServer : public RenderingServer {
+protected:
+    LoopingServer() : RenderingServer({"--clock", "frames", "--frames", "3"}) {}
+};
+
+TEST_F(LoopingServer, SendsBothModesAndDrains) {
     OpenCall thin(connect(port_));
     OpenCall thick(connect(port_));
     v1::Configure wanted;
@@ -178,7 +192,7 @@ TEST_F(RenderingServer, SendsBothModesAndDrains) {
     EXPECT_FALSE(std::filesystem::exists(port_file_));
 }
 
-TEST_F(RenderingServer, SecondSignalStopsAtOnce) {
+TEST_F(LoopingServer, SecondSignalStopsAtOnce) {
     OpenCall call(connect(port_));
     call.configure();
     headers(call, 1);
@@ -187,6 +201,106 @@ TEST_F(RenderingServer, SecondSignalStopsAtOnce) {
     server_.terminate();
     EXPECT_EQ(server_.wait(), 0) << server_.text();
     EXPECT_FALSE(call.finish().ok());
+}
+
+/// The scene rests, so whatever changes by more than noise is the camera's doing.
+class SteeredServer : public RenderingServer {
+protected:
+    SteeredServer() : RenderingServer({"--camera-control", "steered", "--time", "0"}) {}
+
+    /// The next frame, one view of the source; acknowledged.
+    wire::ReceivedFrame frame(OpenCall& call) {
+        while (auto message = call.read_until(v1::ServerMessage::kFrameChunk)) {
+            const v1::FrameChunk chunk = message->frame_chunk();
+            auto added = assembler_.add(std::move(*message->mutable_frame_chunk()));
+            EXPECT_TRUE(added.has_value());
+            if (chunk.has_trailer()) {
+                call.acknowledge(chunk);
+            }
+            if (added && *added) {
+                return std::move(**added);
+            }
+        }
+        throw std::runtime_error("the stream ended\n" + server_.text());
+    }
+
+    /// The first frame that shows the pose of that number.
+    wire::ReceivedFrame frame_of(OpenCall& call, std::uint64_t sequence) {
+        wire::ReceivedFrame received = frame(call);
+        while (received.header().applied_pose.value_or(AppliedPose{}).sequence != sequence) {
+            received = frame(call);
+        }
+        return received;
+    }
+
+    static void steer(OpenCall& call, const glm::mat4& pose, std::uint64_t sequence, bool cut = false) {
+        v1::ClientMessage message;
+        v1::SteerCamera& steer = *message.mutable_steer_camera();
+        for (int i = 0; i < 12; ++i) {
+            steer.add_world_from_camera(pose[i / 3][i % 3]);
+        }
+        steer.set_sequence(sequence);
+        steer.set_client_time_ns(static_cast<std::int64_t>(1000 + sequence));
+        steer.set_cut(cut);
+        call.send(message);
+    }
+
+    /// Mean difference of two pictures of equal size, in steps of 8 bits.
+    static double difference(const wire::ReceivedFrame& a, const wire::ReceivedFrame& b) {
+        const auto& left = std::get<wire::ReceivedViews>(a.content).views.views.at(0).image.bytes;
+        const auto& right = std::get<wire::ReceivedViews>(b.content).views.views.at(0).image.bytes;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            sum += std::abs(std::to_integer<int>(left[i]) - std::to_integer<int>(right.at(i)));
+        }
+        return sum / static_cast<double>(left.size());
+    }
+
+    wire::FrameAssembler assembler_;
+};
+
+TEST_F(SteeredServer, PosesMoveTheCameraAndThePicture) {
+    OpenCall call(connect(port_), "", kStartDeadline); // some twenty frames
+    v1::Configure wanted;
+    wanted.mutable_grid()->set_rows(1);
+    wanted.mutable_grid()->set_cols(1);
+    call.configure(wanted);
+    const auto configured = call.read_until(v1::ServerMessage::kConfigured);
+    ASSERT_TRUE(configured.has_value());
+    assembler_.begin_epoch(configured->configured().epoch(), {});
+    wire::ReceivedFrame rest = frame(call);
+    for (int i = 0; i < 3; ++i) {
+        rest = frame(call); // noise settles
+    }
+    EXPECT_FALSE(rest.header().applied_pose.has_value());
+    const glm::mat4 start = rest.header().source.world_from_camera;
+    v1::ClientMessage request;
+    request.mutable_request_steering();
+    call.send(request);
+
+    steer(call, start, 1);
+    const wire::ReceivedFrame same = frame_of(call, 1);
+    EXPECT_EQ(same.header().applied_pose, (AppliedPose{.lease = 1, .sequence = 1, .client_time_ns = 1001}));
+    const double noise = difference(rest, same);
+
+    const glm::mat4 turned = start * glm::mat4(glm::mat3(glm::vec3(0, 0, -1), glm::vec3(0, 1, 0), glm::vec3(1, 0, 0)));
+    steer(call, turned, 2);
+    const wire::ReceivedFrame moved = frame_of(call, 2);
+    EXPECT_FALSE(moved.header().cut);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row) { // a few roundings of floats below 10
+            EXPECT_NEAR(moved.header().source.world_from_camera[column][row], turned[column][row], 1e-5F);
+        }
+    }
+    EXPECT_GT(difference(rest, moved), 5.0 * noise + 5.0) << "a quarter turn shows another picture";
+
+    steer(call, start, 3, true);
+    const wire::ReceivedFrame back = frame_of(call, 3);
+    EXPECT_TRUE(back.header().cut);
+    EXPECT_LT(difference(rest, back), difference(rest, moved) / 2.0) << "the old picture again, but for noise";
+    EXPECT_FALSE(frame(call).header().cut) << "one jump is one cut";
+    call.half_close();
+    EXPECT_TRUE(call.finish().ok());
 }
 
 TEST(ServerProcess, RenderWritesALightFieldWithoutServing) {

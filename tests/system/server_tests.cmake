@@ -9,6 +9,7 @@ fieldcast_test(server_session_test LABELS quick tsan
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_recording_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
@@ -34,6 +35,7 @@ fieldcast_test(server_metrics_test LABELS quick
 fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_turns_test.cpp
     DEPENDS fieldcast_server_channel)
 fieldcast_test(server_replay_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
@@ -47,6 +49,7 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
                 ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_steering_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
     fieldcast_test(server_limits_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
@@ -65,7 +68,7 @@ endif()
 fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
-    DEPENDS fieldcast_proto_grpc)
+    DEPENDS fieldcast_proto_grpc fieldcast_wire)
 target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
@@ -95,3 +98,9 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
     gtest_discover_tests(envoy_test WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                          PROPERTIES LABELS system TIMEOUT 180 FIXTURES_REQUIRED envoy)
 endif()
+fieldcast_test(channels_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/channels_process_test.cpp
+    DEPENDS running_server nlohmann_json::nlohmann_json)
+add_dependencies(channels_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(channels_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")

@@ -40,6 +40,7 @@ TEST(Convert, FrameHeaderSurvives) {
 
 TEST(Convert, SourcesOfAFrameSurvive) {
     FrameHeader header = test_header(7);
+    header.applied_pose = {.lease = 3, .sequence = 1ULL << 40U, .client_time_ns = -5};
     header.source_positions = {{-4, -4}, {6, 5}};
     header.source_geometry = {{0.02F, 0.03F}, 2.5F};
     v1::FrameHeader message;
@@ -125,6 +126,7 @@ TEST(Convert, HeaderOutOfRangeNamesTheField) {
          [](auto& m) { m.mutable_settings()->mutable_reprojection()->set_min_normal_cos(-2.0F); }},
         {"cascade_rows", [](auto& m) { m.mutable_settings()->mutable_holes()->set_cascade_rows(73); }},
         {"layer_count", [](auto& m) { m.set_layer_count(1); }},
+        {"applied_pose", [](auto& m) { m.mutable_applied_pose()->set_sequence(1); }},
         {"0 positions", [](auto& m) { m.mutable_sources()->clear_positions(); }},
         {"9 positions",
          [](auto& m) {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/play/pilot.h"
+
+#include "client/net/clock_sync.h"
+#include "core/base/log.h"
+
+namespace fieldcast::client::play {
+namespace {
+
+constexpr std::chrono::milliseconds kPosePeriod{16}; // about as often as displays show pictures
+constexpr int kSignsOfLifePerLease = 3;              // two may be late
+
+} // namespace
+
+void Pilot::begin(net::Session& session) {
+    lease_ = 0;
+    start_.reset();
+    session.send(net::to_request(options_.waits));
+}
+
+void Pilot::look(net::Session& session, Clock::time_point now) {
+    if (!is_steering() || now < next_pose_) {
+        return;
+    }
+    next_pose_ = now + kPosePeriod;
+    const double seconds = std::chrono::duration<double>(now - begun_).count();
+    const auto pose = start_ ? options_.poses(seconds, *start_) : std::nullopt; // until a frame tells where it is
+    if (pose) {
+        session.send(net::to_pose(*pose, ++sequence_, net::steady_now_ns()));
+    } else if (now - last_sent_ >= sign_of_life_period_) {
+        session.send(net::sign_of_life());
+    } else {
+        return;
+    }
+    last_sent_ = now;
+}
+
+std::optional<std::string> Pilot::handle(net::Session& session, const net::SteeringNews& news, Clock::time_point now) {
+    using Kind = net::SteeringNews::Kind;
+    switch (news.kind) {
+    case Kind::kGranted:
+        log::info("we steer", {{"lease", news.lease}});
+        lease_ = news.lease;
+        sequence_ = shown_sequence_ = 0;
+        sign_of_life_period_ = news.expires_after / kSignsOfLifePerLease;
+        begun_ = next_pose_ = last_sent_ = now;
+        return std::nullopt;
+    case Kind::kWaiting:
+        log::warn("waiting for the camera", {{"reason", news.message}});
+        return std::nullopt;
+    case Kind::kPassedOver:
+        log::warn("pose not taken", {{"reason", news.message}});
+        return std::nullopt;
+    case Kind::kRefused:
+        return "not steering: " + news.message;
+    case Kind::kExpired:
+        session.send(net::to_request(true));
+        [[fallthrough]];
+    case Kind::kReleased:
+        log::warn("we do not steer any more", {{"reason", news.message}});
+        lease_ = 0;
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::int64_t> Pilot::chosen_ns(const FrameHeader& header) {
+    if (!start_) {
+        start_ = header.source.world_from_camera;
+    }
+    const std::optional<AppliedPose>& applied = header.applied_pose;
+    if (!is_steering() || !applied || applied->lease != lease_ || applied->sequence <= shown_sequence_) {
+        return std::nullopt;
+    }
+    shown_sequence_ = applied->sequence;
+    return applied->client_time_ns;
+}
+
+} // namespace fieldcast::client::play

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/ops/camera_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+namespace fieldcast::ops {
+
+namespace {
+
+constexpr double kShortestLease_s = 0.5; // several poses on a slow connection
+constexpr double kLongestLease_s = 3600.0;
+
+/// One --camera-control: for one channel, or for all.
+void read_control(const std::string& entry, Config& config, std::vector<std::string>& problems) {
+    const std::size_t equals = entry.rfind('=');
+    const std::string word = equals == std::string::npos ? entry : entry.substr(equals + 1);
+    if (word != "scripted" && word != "steered") {
+        problems.push_back("--camera-control " + entry + ": scripted or steered, or NAME= and one of them");
+        return;
+    }
+    const auto control = word == "steered" ? std::optional(feed::CameraControl::kSteered) : std::nullopt;
+    bool is_known = equals == std::string::npos;
+    for (ChannelChoice& channel : config.channels) {
+        const bool is_meant = equals == std::string::npos || channel.name == entry.substr(0, equals);
+        channel.control = is_meant ? control : channel.control;
+        is_known = is_known || is_meant;
+    }
+    if (!is_known) {
+        problems.push_back("--camera-control " + entry + ": no channel has this name");
+    }
+}
+
+} // namespace
+
+void add_camera_flags(CLI::App& app, FlagText& text) {
+    app.add_option("--camera-control", text.camera_controls,
+                   "scripted: the camera node's animation; steered: one client at a time. NAME=CONTROL: of one channel. "
+                   "May be repeated")
+        ->group("Scene");
+    app.add_option("--steering-lease", text.steering_lease_s,
+                   "Seconds without a sign of life after which who steers has to let go")
+        ->group("Scene")
+        ->capture_default_str();
+}
+
+void read_camera_controls(const FlagText& text, Config& config, std::vector<std::string>& problems) {
+    for (const bool is_for_one : {false, true}) { // what is said of one channel wins
+        for (const std::string& entry : text.camera_controls) {
+            if (is_for_one == (entry.find('=') != std::string::npos)) {
+                read_control(entry, config, problems);
+            }
+        }
+    }
+    if (!(text.steering_lease_s >= kShortestLease_s && text.steering_lease_s <= kLongestLease_s)) {
+        std::ostringstream line;
+        line << "--steering-lease " << text.steering_lease_s << ": " << kShortestLease_s << " to " << kLongestLease_s
+             << " seconds";
+        problems.push_back(line.str());
+        return;
+    }
+    config.steering_lease = std::chrono::milliseconds(static_cast<std::int64_t>(text.steering_lease_s * 1e3));
+}
+
+} // namespace fieldcast::ops
