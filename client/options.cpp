@@ -125,6 +125,9 @@ void add_output_flags(CLI::App& app, FlagText& text, Options& options) {
         ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
         ->capture_default_str();
     app.add_option("--json", options.json, "Write the statistics to this file");
+    app.add_option("--frame-log", options.play.timing_files.frame_log,
+                   "FILE.csv or .jsonl: a row per frame, from the server's pose to the display here");
+    app.add_option("--trace", options.play.timing_files.trace, "FILE.json for ui.perfetto.dev: the same as a picture");
     app.add_flag("--verbose", options.is_verbose, "Log every frame");
 }
 
@@ -203,6 +206,9 @@ void read_text(const FlagText& text, Options& options) {
                         : text.save == "none" ? play::Save::kNone
                                               : play::Save::kLast;
     options.play.products = read_products(text.write);
+    if (const auto problem = timing::problem_with(options.play.timing_files, "--frame-log", "--trace")) {
+        throw UserError(*problem);
+    }
     if (options.play.products.source_exr && wish.mode == net::Mode::kViews) {
         throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
     }

@@ -41,6 +41,10 @@ v1::ClientMessage to_ack(const FrameReport& report, v1::FrameOutcome outcome) {
     ack.set_rendered_ns(report.rendered_ns);
     ack.set_shown_ns(report.shown_ns);
     ack.set_times_shown(report.shown_ns != 0 ? 1 : 0);
+    if (report.clock) {
+        ack.mutable_clock()->set_server_minus_client_ns(report.clock->server_minus_client_ns);
+        ack.mutable_clock()->set_round_trip_ns(report.clock->round_trip_ns);
+    }
     return message;
 }
 
@@ -185,12 +189,14 @@ Event Session::arrived_frame(wire::ReceivedFrame frame, std::int64_t last_byte_n
     arrived.decoded_ns = steady_now_ns();
     arrived.pose_sampled_ns = clock_.client_from_server_ns(frame.server_times.pose_sampled_ns);
     arrived.send_begin_ns = clock_.client_from_server_ns(frame.server_times.send_begin_ns);
+    arrived.clock = clock_.offset();
     FrameReport report;
     report.frame_id = arrived.frame_id;
     report.epoch = frame.epoch;
     report.first_byte_ns = arrived.first_byte_ns;
     report.last_byte_ns = arrived.last_byte_ns;
     report.decoded_ns = arrived.decoded_ns;
+    report.clock = arrived.clock;
     stream_.send(to_ack(report, v1::FRAME_OUTCOME_DECODED));
     arrived.frame = std::move(frame);
     return arrived;

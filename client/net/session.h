@@ -24,6 +24,7 @@ struct FrameArrived {
     std::int64_t decoded_ns = 0;
     std::optional<std::int64_t> pose_sampled_ns; ///< server's time on our clock, if known
     std::optional<std::int64_t> send_begin_ns;
+    std::optional<ClockSync::Offset> clock; ///< when it arrived
 };
 
 /// A frame that could not be decoded, or was not what was agreed.
@@ -63,6 +64,7 @@ struct FrameReport {
     std::int64_t decoded_ns = 0;
     std::int64_t rendered_ns = 0; ///< mode kScene
     std::int64_t shown_ns = 0;
+    std::optional<ClockSync::Offset> clock; ///< lets the server place these times on its own clock
 };
 
 /// One stream with one configuration: asks, decodes, acknowledges, keeps the clocks in step. Everything that comes in

@@ -3,6 +3,7 @@
 
 #include "client/net/session.h"
 #include "core/base/guarded.h"
+#include "core/timing/frame_timing.h"
 
 #include <condition_variable>
 #include <memory>
@@ -16,6 +17,7 @@ struct Arrival {
     net::Agreement agreement;
     net::FrameArrived arrived;
     std::weak_ptr<net::Session> session;
+    std::optional<timing::DeliveredFrame> record{}; ///< for the files of timings, if there are any
 };
 
 /// Tells the server what became of a frame. `rendered_ns` and `shown_ns` are 0 for a superseded one.

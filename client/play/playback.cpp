@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/playback.h"
+#include "client/play/frame_record.h"
 #include "client/play/scene_player.h"
 #include "client/play/scene_source.h"
 
@@ -55,7 +56,8 @@ std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, st
 
 class Player {
 public:
-    Player(const PlayOptions& options, SceneSide* scene_side) : options_(options), scene_side_(scene_side) {}
+    Player(const PlayOptions& options, SceneSide* scene_side, timing::Recorder* recorder)
+        : options_(options), scene_side_(scene_side), recorder_(recorder) {}
 
     /// False if the frame could not be shown.
     bool show(Arrival arrival);
@@ -72,6 +74,7 @@ private:
 
     const PlayOptions& options_;
     SceneSide* scene_side_; ///< null in mode kViews
+    timing::Recorder* recorder_; ///< null: none
     std::optional<Shown> last_;
     std::uint64_t shown_count_ = 0;
     std::deque<ShownFrame> frames_; ///< the last ones
@@ -126,6 +129,13 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.render_ms = scene_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
     add_discards(last_->views, frame);
+    if (arrival.record) {
+        timing::DeliveredFrame full = *arrival.record;
+        full.outcome = timing::Outcome::kShown;
+        full.rendered_ns = scene_side_ != nullptr ? rendered_ns : 0;
+        full.shown_ns = shown_ns;
+        add_record(*recorder_, std::move(full));
+    }
     frames_.push_back(frame);
     ++shown_count_;
     if (frames_.size() > kRememberedFrames) {
@@ -182,8 +192,14 @@ PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const
     if (options.wish.mode == net::Mode::kScene) {
         scene_side = make_scene_side(options, stop);
     }
-    Receiver receiver(options.server, options.wish, scene_side ? std::optional(scene_side->hash) : std::nullopt);
-    Player player(options, scene_side.get());
+    std::optional<timing::Recorder> recorder;
+    if (options.timing_files.any()) {
+        recorder.emplace(options.timing_files);
+    }
+    timing::Recorder* const records = recorder ? &*recorder : nullptr;
+    Receiver receiver(options.server, options.wish, scene_side ? std::optional(scene_side->hash) : std::nullopt,
+                      records);
+    Player player(options, scene_side.get(), records);
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };
     while (!is_complete()) {

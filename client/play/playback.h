@@ -22,6 +22,7 @@ struct PlayOptions {
     Save save = Save::kLast;
     std::filesystem::path out = "out";
     image::LightFieldProducts products;
+    timing::RecorderFiles timing_files;
     // Of mode kScene:
     std::filesystem::path cache_folder;
     std::string device;             ///< part of the name; empty: the best

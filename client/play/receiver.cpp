@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/receiver.h"
 
+#include "client/play/frame_record.h"
+
 #include "core/base/log.h"
 #include "core/scene/bundle.h"
 
@@ -33,8 +35,9 @@ struct Receiver::SessionState {
     }
 };
 
-Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash)
-    : server_(server), wish_(wish), scene_hash_(scene_hash),
+Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+                   timing::Recorder* recorder)
+    : server_(server), wish_(wish), scene_hash_(scene_hash), recorder_(recorder),
       pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -127,9 +130,17 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
 void Receiver::arrived(net::FrameArrived frame, SessionState& state) {
     state.attempts->succeeded();
     log::debug("frame arrived", {{"frame", frame.frame_id}, {"bytes", frame.frame.payload_bytes}});
-    if (const auto replaced = mailbox_.put({*state.agreement, std::move(frame), state.session})) {
+    Arrival arrival{*state.agreement, std::move(frame), state.session};
+    if (recorder_ != nullptr) {
+        arrival.record = frame_record(arrival.arrived, arrival.agreement.channel, counts_.lock()->sessions);
+    }
+    if (auto replaced = mailbox_.put(std::move(arrival))) {
         ++counts_.lock()->superseded;
         report_times(*replaced, true, 0, 0);
+        if (replaced->record) {
+            replaced->record->outcome = timing::Outcome::kSuperseded;
+            add_record(*recorder_, std::move(*replaced->record));
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #include "client/play/attempts.h"
 #include "client/play/frame_mailbox.h"
 #include "client/play/statistics.h"
+#include "core/timing/recorder.h"
 
 #include <chrono>
 #include <optional>
@@ -32,7 +33,9 @@ struct Failure {
 class Receiver {
 public:
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
-    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash);
+    /// `recorder` gets frames that are superseded, and arrivals a record; null: none. It must outlive this.
+    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+             timing::Recorder* recorder = nullptr);
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
@@ -60,6 +63,7 @@ private:
     ServerOptions server_;
     net::Wish wish_;
     std::optional<scene::SceneHash> scene_hash_;
+    timing::Recorder* recorder_;
     WorkerPool pool_;
     FrameMailbox mailbox_;
     Guarded<StreamCounts> counts_;

@@ -93,6 +93,9 @@ void Feed::publish(const FramePtr& frame) {
             callbacks.push_back(subscriber.callback);
         }
     }
+    if (observer_) {
+        observer_(frame);
+    }
     for (const auto& callback : callbacks) {
         (*callback)(frame);
     }

@@ -48,8 +48,11 @@ public:
     /// Sleeps until somebody wants something. False: `stop` was requested.
     bool wait_for_demand(const std::stop_token& stop);
 
-    /// Gives `frame` to every subscriber.
+    /// Gives `frame` to every subscriber, and to the observer before.
     void publish(const FramePtr& frame);
+
+    /// `observer` sees every frame without wanting anything. To be set before the first frame; never changes.
+    void observe(FrameCallback observer) { observer_ = std::move(observer); }
 
     LatestFrame latest();
 
@@ -81,6 +84,7 @@ private:
     void remove(std::uint64_t id);
 
     const ChannelInfo info_;
+    FrameCallback observer_; ///< may be empty
     std::atomic<bool> has_failed_ = false;
     std::condition_variable demand_changed_;
     Guarded<State> state_;

@@ -38,6 +38,8 @@ struct FlagText {
     std::string tokens;
     std::string metrics_listen;
     std::string metrics_port_file;
+    std::string frame_log;
+    std::string trace;
     std::string log_level = "info";
     std::string log_format = "text";
 };

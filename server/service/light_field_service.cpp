@@ -27,12 +27,12 @@ using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 } // namespace
 
 LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
-                                     const access::Gate& gate, ServiceMetrics& metrics)
-    : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(metrics), sessions_(limits),
-      refusal_log_(RateLimit(kLogRate)),
-      collector_(metrics.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
+                                     const access::Gate& gate, const Observers& observers)
+    : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(*observers.metrics),
+      recorder_(observers.recorder), sessions_(limits), refusal_log_(RateLimit(kLogRate)),
+      collector_(metrics_.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
     for (const auto& channel : channels_) {
-        metrics.prepare(channel->info().name);
+        metrics_.prepare(channel->info().name);
     }
 }
 
@@ -85,6 +85,7 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
                                                 .limits = limits_,
                                                 .budgets = admission->budgets,
                                                 .metrics = &metrics_,
+                                                .recorder = recorder_,
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
     sessions_.add(id, stream);

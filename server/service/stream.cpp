@@ -24,14 +24,20 @@ std::shared_ptr<Stream> Stream::open(grpc::CallbackServerContext& context, Setup
 }
 
 void Stream::begin() {
-    state_.lock()->session.emplace(
-        setup_.channels, setup_.limits,
-        [weak = weak_from_this()](const feed::FramePtr& frame) {
-            if (const auto stream = weak.lock()) {
-                stream->take_frame(frame);
-            }
-        },
-        Clock::now(), setup_.budgets);
+    {
+        auto state = state_.lock();
+        state->session.emplace(
+            setup_.channels, setup_.limits,
+            [weak = weak_from_this()](const feed::FramePtr& frame) {
+                if (const auto stream = weak.lock()) {
+                    stream->take_frame(frame);
+                }
+            },
+            Clock::now(), setup_.budgets);
+        if (setup_.recorder != nullptr) {
+            state->session->timings().enable();
+        }
+    }
     pump();
 }
 
@@ -200,9 +206,20 @@ session::CloseReason Stream::close_reason(const State& state) {
     return state.failure ? *state.failure : state.session->close_reason().value_or(usual);
 }
 
+void Stream::record_timings() {
+    if (setup_.recorder == nullptr) {
+        return;
+    }
+    for (timing::DeliveredFrame& frame : state_.lock()->session->timings().take_finished()) {
+        frame.client = setup_.id;
+        setup_.recorder->add(std::move(frame));
+    }
+}
+
 void Stream::tick() {
     const auto now = Clock::now();
     state_.lock()->session->on_tick(now);
+    record_timings();
     if (pin_if_overdue(now)) {
         cut();
     }
@@ -241,6 +258,7 @@ void Stream::OnDone() {
         reason = close_reason(*state);
         state->session->end();
     }
+    record_timings();
     log_closed(counts, reason);
     setup_.metrics->count_closed(reason);
     setup_.on_done(setup_.id);

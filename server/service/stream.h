@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "core/timing/recorder.h"
 #include "server/service/service_metrics.h"
 #include "server/session/session.h"
 
@@ -34,6 +35,7 @@ public:
         session::Limits limits;
         session::PeerBudgets budgets;
         ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
+        timing::Recorder* recorder = nullptr;       ///< of frame timings; null: none; must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`
     };
@@ -83,6 +85,7 @@ private:
     void pump();
     Actions decide(session::TimePoint now);
     void receive();
+    void record_timings();
     void take_frame(const feed::FramePtr& frame);
     void end(const grpc::Status& status, std::optional<session::CloseReason> why = std::nullopt);
     static session::CloseReason close_reason(const State& state);

@@ -121,6 +121,7 @@ std::optional<std::string> Session::subscribe(const Configuration& wanted) {
 }
 
 void Session::end() {
+    timings_.end();
     subscription_.end();
     pixels_.resize(0);
     bytes_.resize(0);
@@ -133,6 +134,7 @@ void Session::drop_old_configuration() {
         aborted.set_epoch(epoch_);
         aborted.set_reason(v1::ABORT_REASON_RECONFIGURED);
         credits_.give_back({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        timings_.aborted({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
         bytes_.resize(credits_.bytes_in_flight());
         counts_.drops.add(DropReason::kReconfigured);
         sending_.reset();
@@ -146,6 +148,7 @@ void Session::handle(const v1::FrameAck& ack, TimePoint now) {
     const bool is_first =
         credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
     bytes_.resize(credits_.bytes_in_flight());
+    timings_.acknowledged(ack);
     if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
         ++counts_.frames_failed;
         if (ack.epoch() == epoch_) {
@@ -283,6 +286,8 @@ void Session::start_frame(TimePoint now) {
     }
     const feed::FramePtr encoded = *mailbox_.take();
     credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
+    timings_.begun({.epoch = epoch_, .frame_id = frame.frame_id}, configuration_->feed->info().name, *encoded,
+                   frame.payload_bytes);
     auto plane_bytes = plane_bytes_of(*encoded, frame);
     sending_ = Sending{
         .frame = std::move(frame), .next_chunk = 0, .times = encoded->times, .plane_bytes = std::move(plane_bytes)};
@@ -348,6 +353,7 @@ wire::WireChunk Session::next_chunk(TimePoint now) {
         counts_.plane_bytes[choice] += bytes;
     }
     credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
+    timings_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, sending.times);
     if (sending.frame.key_frame_id == sending.frame.frame_id) {
         set_key_frame(sending.frame.frame_id); // what follows on the stream arrives after it
     }

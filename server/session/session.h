@@ -5,6 +5,7 @@
 #include "server/session/budget.h"
 #include "server/session/close_reason.h"
 #include "server/session/credits.h"
+#include "server/session/frame_timings.h"
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
 #include "server/session/session_counts.h"
@@ -42,6 +43,9 @@ public:
 
     /// The client was told to go and has not gone in time: cut the stream.
     bool is_overdue(TimePoint now) const { return cut_at_ && now >= *cut_at_; }
+
+    /// When its frames were where; nothing unless enabled.
+    FrameTimings& timings() { return timings_; }
 
     /// Gives up its place in the channel: no further frames are rendered for it.
     void end();
@@ -109,6 +113,7 @@ private:
     TimePoint configure_by_;
     TimePoint next_frame_due_{}; ///< by the client's rate cap
     SessionCounts counts_;
+    FrameTimings timings_;
     feed::Subscription subscription_; ///< last: ends before what its callback leads to
 };
 

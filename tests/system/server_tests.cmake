@@ -9,6 +9,7 @@ fieldcast_test(server_session_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_timings_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
