@@ -17,6 +17,7 @@ struct Arrival {
     net::Agreement agreement;
     net::FrameArrived arrived;
     std::weak_ptr<net::Session> session;
+    std::uint32_t session_number = 0; ///< of the run, from 1
     std::optional<timing::DeliveredFrame> record{}; ///< for the files of timings, if there are any
 };
 

@@ -6,6 +6,7 @@
 
 #include "core/base/log.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -46,12 +47,37 @@ struct Shown {
     std::uint64_t frame_id = 0;
     ViewGrid grid;
     Views views;
+    bool is_made_here = false; ///< mode kScene
 };
 
+constexpr std::size_t kRememberedEpochs = 256;
 constexpr std::size_t kRememberedFrames = 1U << 16; // statistics of endless runs are about the last ones
 
 std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, std::int64_t end_ns) {
     return begin_ns ? std::optional(static_cast<double>(end_ns - *begin_ns) * 1e-6) : std::nullopt;
+}
+
+std::string mode_text(const net::Agreement& agreement) {
+    const bool rebuilds = agreement.wish.planes == net::PlaneWish::kIllumination;
+    return agreement.mode == net::Mode::kViews ? "views" : rebuilds ? "scene, illumination" : "scene, with G-buffer";
+}
+
+std::string grid_text(const ViewGrid& grid) {
+    return std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
+}
+
+/// Empty: we asked for it.
+std::string reason_text(const net::Agreement& agreement) {
+    if (!agreement.adapted) {
+        return "";
+    }
+    const net::Adapted& adapted = *agreement.adapted;
+    return adapted.change + ", " +
+           (adapted.is_recovery ? "recovered" : "queue of " + std::to_string(adapted.queue_delay_ms) + " ms");
+}
+
+std::string size_text(const wire::ViewSet& set) {
+    return std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
 }
 
 class Player {
@@ -71,13 +97,15 @@ private:
     Decoded<Shown> make(Arrival& arrival);
     void write(const std::filesystem::path& folder) const;
     void record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t rendered_ns, std::int64_t shown_ns);
+    void count_epoch(const Arrival& arrival);
 
     const PlayOptions& options_;
-    SceneSide* scene_side_; ///< null in mode kViews
+    SceneSide* scene_side_;      ///< null if no mode kScene is asked for
     timing::Recorder* recorder_; ///< null: none
     std::optional<Shown> last_;
     std::uint64_t shown_count_ = 0;
     std::deque<ShownFrame> frames_; ///< the last ones
+    std::deque<EpochSummary> epochs_; ///< the last ones
 };
 
 Decoded<Shown> Player::make(Arrival& arrival) {
@@ -95,6 +123,7 @@ Decoded<Shown> Player::make(Arrival& arrival) {
         return tl::unexpected(views.error());
     }
     shown.views = std::move(*views);
+    shown.is_made_here = true;
     return shown;
 }
 
@@ -113,7 +142,7 @@ bool Player::show(Arrival arrival) {
         write(options_.out / name.data());
     }
     const std::int64_t shown_ns = net::steady_now_ns();
-    report_times(arrival, false, scene_side_ != nullptr ? rendered_ns : 0, shown_ns);
+    report_times(arrival, false, arrival.agreement.mode == net::Mode::kScene ? rendered_ns : 0, shown_ns);
     record(arrival, begin_ns, rendered_ns, shown_ns);
     return true;
 }
@@ -126,26 +155,51 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.pose_to_decoded_ms = ms_between(arrival.arrived.pose_sampled_ns, arrival.arrived.decoded_ns);
     frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
     frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
-    frame.render_ms = scene_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
+    const bool made_views = arrival.agreement.mode == net::Mode::kScene;
+    frame.render_ms = made_views ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
     add_discards(last_->views, frame);
     if (arrival.record) {
         timing::DeliveredFrame full = *arrival.record;
         full.outcome = timing::Outcome::kShown;
-        full.rendered_ns = scene_side_ != nullptr ? rendered_ns : 0;
+        full.rendered_ns = made_views ? rendered_ns : 0;
         full.shown_ns = shown_ns;
         add_record(*recorder_, std::move(full));
     }
     frames_.push_back(frame);
+    count_epoch(arrival);
     ++shown_count_;
     if (frames_.size() > kRememberedFrames) {
         frames_.pop_front();
     }
 }
 
+void Player::count_epoch(const Arrival& arrival) {
+    const net::Agreement& agreement = arrival.agreement;
+    const bool is_new = epochs_.empty() || epochs_.back().epoch != agreement.epoch ||
+                        epochs_.back().session != arrival.session_number;
+    if (is_new) {
+        epochs_.push_back({.session = arrival.session_number,
+                           .epoch = agreement.epoch,
+                           .mode = mode_text(agreement),
+                           .grid = grid_text(agreement.view_set.grid),
+                           .view_size = size_text(agreement.view_set),
+                           .first_frame = last_->frame_id,
+                           .reason = reason_text(agreement)});
+    }
+    EpochSummary& epoch = epochs_.back();
+    ++epoch.shown;
+    epoch.last_frame = last_->frame_id;
+    const auto bytes = static_cast<double>(arrival.arrived.frame.payload_bytes);
+    epoch.bytes_per_frame += (bytes - epoch.bytes_per_frame) / static_cast<double>(epoch.shown);
+    if (epochs_.size() > kRememberedEpochs) {
+        epochs_.pop_front();
+    }
+}
+
 void Player::write(const std::filesystem::path& folder) const {
     std::optional<SourceFrame> source;
-    if (options_.products.source_exr && scene_side_ != nullptr) {
+    if (options_.products.source_exr && scene_side_ != nullptr && last_->is_made_here) {
         source = scene_side_->player->source(); // of the frame played last, which is the one shown last
     }
     const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
@@ -161,6 +215,7 @@ void Player::finish() {
 Summary Player::summary(const StreamCounts& counts) const {
     Summary summary = summarise({frames_.begin(), frames_.end()}, counts);
     summary.shown = shown_count_;
+    summary.epochs.assign(epochs_.begin(), epochs_.end());
     return summary;
 }
 
@@ -175,21 +230,29 @@ Progress Player::progress() const {
 }
 
 void describe(const PlayOptions& options, const std::optional<net::Agreement>& agreement, Summary& summary) {
-    const net::Wish& wish = options.wish;
-    const bool rebuilds = wish.planes == net::PlaneWish::kIllumination;
-    summary.mode = wish.mode == net::Mode::kViews ? "views" : rebuilds ? "scene, illumination" : "scene, with G-buffer";
-    summary.grid = std::to_string(wish.rows) + "x" + std::to_string(wish.cols);
+    net::Agreement asked;
+    asked.mode = options.wish.mode;
+    asked.wish = options.wish;
+    summary.mode = mode_text(agreement.value_or(asked));
+    summary.grid = std::to_string(options.wish.rows) + "x" + std::to_string(options.wish.cols);
     if (agreement) {
-        const wire::ViewSet& set = agreement->view_set;
-        summary.view_size = std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
+        summary.grid = grid_text(agreement->view_set.grid);
+        summary.view_size = size_text(agreement->view_set);
     }
 }
 
+
 } // namespace
+
+bool needs_scene(const PlayOptions& options) {
+    const bool may_adapt = options.wish.adaptation && options.wish.adaptation->allows_scene;
+    return options.wish.mode == net::Mode::kScene || may_adapt ||
+           std::ranges::any_of(options.changes, [](const Change& c) { return c.wish.mode == net::Mode::kScene; });
+}
 
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
     std::unique_ptr<SceneSide> scene_side;
-    if (options.wish.mode == net::Mode::kScene) {
+    if (needs_scene(options)) {
         scene_side = make_scene_side(options, stop);
     }
     std::optional<timing::Recorder> recorder;
@@ -198,7 +261,7 @@ PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const
     }
     timing::Recorder* const records = recorder ? &*recorder : nullptr;
     Receiver receiver(options.server, options.wish, scene_side ? std::optional(scene_side->hash) : std::nullopt,
-                      records);
+                      options.changes, records);
     Player player(options, scene_side.get(), records);
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };

@@ -18,6 +18,7 @@ enum class Save : std::uint8_t { kLast, kAll, kNone };
 struct PlayOptions {
     ServerOptions server;
     net::Wish wish;
+    std::vector<Change> changes; ///< on the running stream, in their order
     std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
     Save save = Save::kLast;
     std::filesystem::path out = "out";
@@ -28,6 +29,9 @@ struct PlayOptions {
     std::string device;             ///< part of the name; empty: the best
     std::string traversal = "auto"; ///< as in scene::choose_traversal
 };
+
+/// Whether this machine may have to make views.
+bool needs_scene(const PlayOptions& options);
 
 /// Where a run stands, for a line of text.
 struct Progress {

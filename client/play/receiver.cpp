@@ -26,6 +26,7 @@ struct Receiver::SessionState {
     std::shared_ptr<net::Session> session;
     Attempts* attempts = nullptr;
     std::optional<net::Agreement> agreement;
+    net::Wish granted; ///< what `agreement` answers
     std::optional<SessionEnd> end;
     std::optional<Clock::time_point> cut_at; ///< we half-closed; the server has so long to finish
 
@@ -36,8 +37,8 @@ struct Receiver::SessionState {
 };
 
 Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-                   timing::Recorder* recorder)
-    : server_(server), wish_(wish), scene_hash_(scene_hash), recorder_(recorder),
+                   std::vector<Change> changes, timing::Recorder* recorder)
+    : server_(server), wish_(wish), changes_(std::move(changes)), scene_hash_(scene_hash), recorder_(recorder),
       pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -82,6 +83,7 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
         if (auto event = state.session->next(Clock::now() + kLookAtStop)) {
             handle(std::move(*event), state);
         }
+        ask_for_change(state);
         if (stop.stop_requested() && !state.cut_at) {
             state.leave(kFinishGrace);
         }
@@ -100,9 +102,7 @@ void Receiver::handle(net::Event event, SessionState& state) {
                               log::warn("frame failed", {{"reason", failed.reason}});
                           },
                           [&](net::FrameAborted&) { ++counts_.lock()->aborted; },
-                          [&](net::Refused& refused) {
-                              state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
-                          },
+                          [&](net::Refused& no) { refused(no, state); },
                           [&](net::GoingAway& going) {
                               log::info("server is going away", {{"reason", going.reason}});
                               state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
@@ -115,6 +115,26 @@ void Receiver::handle(net::Event event, SessionState& state) {
                event);
 }
 
+void Receiver::ask_for_change(SessionState& state) {
+    if (state.cut_at || state.end || !state.session->may_configure()) {
+        return;
+    }
+    if (auto wish = changes_.due(Clock::now())) {
+        wish_ = std::move(*wish);
+        state.session->configure(wish_);
+    }
+}
+
+/// Without room for it the stream goes on as it was; what cannot be had at all was asked for by mistake.
+void Receiver::refused(const net::Refused& refused, SessionState& state) {
+    if (refused.was_change && refused.is_transient) {
+        log::warn("change refused", {{"reason", refused.message}});
+        wish_ = state.granted;
+        return;
+    }
+    state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
+}
+
 void Receiver::agreed(net::Agreement agreement, SessionState& state) {
     if (scene_hash_ && agreement.scene_hash != *scene_hash_) {
         state.end = SessionEnd{"channel '" + agreement.channel + "' now shows another scene, " +
@@ -122,17 +142,35 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
                                false};
         return;
     }
-    ++counts_.lock()->sessions;
-    log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
+    changes_.agreed(Clock::now());
+    if (agreement.adapted) {
+        ++counts_.lock()->adaptations;
+        log::info("server adapted", {{"epoch", agreement.epoch},
+                                     {"level", agreement.adapted->level},
+                                     {"change", agreement.adapted->change},
+                                     {"queue_delay_ms", agreement.adapted->queue_delay_ms},
+                                     {"delivered_bytes_per_second", agreement.adapted->delivered_bytes_per_second}});
+        state.agreement = std::move(agreement);
+        return;
+    }
+    state.granted = agreement.wish;
+    if (state.agreement) {
+        ++counts_.lock()->changes;
+        log::info("configuration changed", {{"epoch", agreement.epoch}});
+    } else {
+        ++counts_.lock()->sessions;
+        log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
+    }
     state.agreement = std::move(agreement);
 }
 
 void Receiver::arrived(net::FrameArrived frame, SessionState& state) {
     state.attempts->succeeded();
+    changes_.frame_arrived();
     log::debug("frame arrived", {{"frame", frame.frame_id}, {"bytes", frame.frame.payload_bytes}});
-    Arrival arrival{*state.agreement, std::move(frame), state.session};
+    Arrival arrival{*state.agreement, std::move(frame), state.session, counts_.lock()->sessions};
     if (recorder_ != nullptr) {
-        arrival.record = frame_record(arrival.arrived, arrival.agreement.channel, counts_.lock()->sessions);
+        arrival.record = frame_record(arrival.arrived, arrival.agreement.channel, arrival.session_number);
     }
     if (auto replaced = mailbox_.put(std::move(arrival))) {
         ++counts_.lock()->superseded;

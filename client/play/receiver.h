@@ -3,6 +3,7 @@
 
 #include "client/net/session.h"
 #include "client/play/attempts.h"
+#include "client/play/change.h"
 #include "client/play/frame_mailbox.h"
 #include "client/play/statistics.h"
 #include "core/timing/recorder.h"
@@ -33,9 +34,10 @@ struct Failure {
 class Receiver {
 public:
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
-    /// `recorder` gets frames that are superseded, and arrivals a record; null: none. It must outlive this.
+    /// `changes` are asked for on the running stream. `recorder` gets frames that are superseded, and arrivals a record;
+    /// null: none. It must outlive this.
     Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-             timing::Recorder* recorder = nullptr);
+             std::vector<Change> changes = {}, timing::Recorder* recorder = nullptr);
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
@@ -58,10 +60,13 @@ private:
     SessionEnd run_session(const std::stop_token& stop, Attempts& attempts);
     void handle(net::Event event, SessionState& state);
     void agreed(net::Agreement agreement, SessionState& state);
+    void refused(const net::Refused& refused, SessionState& state);
+    void ask_for_change(SessionState& state);
     void arrived(net::FrameArrived frame, SessionState& state);
 
     ServerOptions server_;
-    net::Wish wish_;
+    net::Wish wish_; ///< asked for last, and again after a reconnect
+    ChangeSchedule changes_;
     std::optional<scene::SceneHash> scene_hash_;
     timing::Recorder* recorder_;
     WorkerPool pool_;

@@ -38,7 +38,7 @@ LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> ch
 
 void LightFieldService::collect(metrics::Page& page) {
     std::map<SessionKey, std::uint64_t> sessions;
-    std::map<std::string, std::array<std::uint64_t, 2>> in_flight; // frames and bytes by channel
+    std::map<std::string, std::array<std::uint64_t, 3>> in_flight; // frames, bytes and adapted sessions by channel
     for (const auto& channel : channels_) {
         in_flight[channel->info().name] = {};
     }
@@ -49,6 +49,7 @@ void LightFieldService::collect(metrics::Page& page) {
         if (!facts.channel.empty()) {
             in_flight[facts.channel][0] += facts.frames_in_flight;
             in_flight[facts.channel][1] += facts.bytes_in_flight;
+            in_flight[facts.channel][2] += facts.is_adapted ? 1 : 0;
         }
     }
     for (const auto& [key, count] : sessions) {
@@ -60,6 +61,8 @@ void LightFieldService::collect(metrics::Page& page) {
                        {{"channel", channel}}, static_cast<double>(amounts[0]));
         page.add_gauge({"fieldcast_bytes_in_flight", "Bytes of frames that were begun and are not acknowledged."},
                        {{"channel", channel}}, static_cast<double>(amounts[1]));
+        page.add_gauge({"fieldcast_adapted_sessions", "Sessions that get less than they asked for."},
+                       {{"channel", channel}}, static_cast<double>(amounts[2]));
     }
 }
 

@@ -145,7 +145,9 @@ void Stream::log_configuration(const session::Session& session) const {
                                      {"rows", set.grid.rows},
                                      {"cols", set.grid.cols},
                                      {"width_px", set.width_px},
-                                     {"height_px", set.height_px}});
+                                     {"height_px", set.height_px},
+                                     {"max_fps", configuration->frames_per_second},
+                                     {"adapted", session.adapted_level()}});
 }
 
 void Stream::take_frame(const feed::FramePtr& frame) {
@@ -191,6 +193,7 @@ SessionFacts Stream::facts() {
     auto state = state_.lock();
     facts.frames_in_flight = state->session->credits().in_flight();
     facts.bytes_in_flight = state->session->credits().bytes_in_flight();
+    facts.is_adapted = state->session->adapted_level() > 0;
     if (const auto& configuration = state->session->configuration()) {
         const ViewGrid& grid = configuration->view_set.grid;
         facts.channel = configuration->feed->info().name;
@@ -218,7 +221,14 @@ void Stream::record_timings() {
 
 void Stream::tick() {
     const auto now = Clock::now();
-    state_.lock()->session->on_tick(now);
+    {
+        auto state = state_.lock();
+        const std::uint32_t epoch = state->session->epoch();
+        state->session->on_tick(now);
+        if (state->session->epoch() != epoch) { // adapted
+            log_configuration(*state->session);
+        }
+    }
     record_timings();
     if (pin_if_overdue(now)) {
         cut();

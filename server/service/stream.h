@@ -24,6 +24,7 @@ struct SessionFacts {
     std::string grid;    ///< "4x4"; empty: not configured yet
     std::uint32_t frames_in_flight = 0;
     std::uint64_t bytes_in_flight = 0;
+    bool is_adapted = false; ///< gets less than it asked for
 };
 
 /// One LightField.Open call: moves messages between gRPC and a Session. One write and one read in flight at most.
