@@ -90,6 +90,14 @@ Wish adapted_wish(const v1::Configured& message, const Wish& wish) {
     return adapted;
 }
 
+Adapted from_proto(const v1::Adapted& message) {
+    return {.level = message.level(),
+            .is_recovery = message.reason() == v1::ADAPTATION_REASON_RECOVERED,
+            .queue_delay_ms = message.queue_delay_ms(),
+            .delivered_bytes_per_second = message.delivered_bytes_per_second(),
+            .change = message.change()};
+}
+
 /// Why a server may not send planes in the codecs that it chose, or nothing.
 std::optional<std::string> codec_problem(const v1::Configured& message, const Wish& wish) {
     for (const v1::PlaneHeader& plane : message.planes()) {
@@ -250,11 +258,7 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& as
     }
     agreement.limits = *limits;
     agreement.wish = wish;
-    if (message.has_adapted()) {
-        const v1::Adapted& adapted = message.adapted();
-        agreement.adapted = Adapted{adapted.level(), adapted.reason() == v1::ADAPTATION_REASON_RECOVERED,
-                                    adapted.queue_delay_ms(), adapted.delivered_bytes_per_second(), adapted.change()};
-    }
+    agreement.adapted = message.has_adapted() ? std::optional(from_proto(message.adapted())) : std::nullopt;
     const float rate = message.frames_per_second();
     agreement.frames_per_second = std::isfinite(rate) && rate > 0.0F ? rate : 0.0F;
     return agreement;
