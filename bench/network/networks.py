@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Latency of real frames on bad networks, with and without adaptation: server and client as processes, one network after
-the other.
+"""Latency of real frames on bad networks, with and without adaptation: server and client as processes, one network
+after the other.
 
     python3 bench/network/networks.py --programs build/dev --out networks.csv
 
---method netem: two network namespaces and `tc netem` between them, with TLS and a token, as beyond loopback. Needs root,
-`ip`, `tc`, `openssl` and a kernel with netem; where one of them is missing it says so and exits with 77.
+--method netem: two network namespaces and `tc netem` between them, with TLS and a token, as beyond loopback. Needs
+root, `ip`, `tc`, `openssl` and a kernel with netem; where one of them is missing it says so and exits with 77.
 --method relay: on loopback, through relay.py, which imitates the same on the bytes of the connection.
 --method auto: netem if possible.
+--synthetic: the real service with frames that cost nothing to render (tests/system/synthetic_server.cpp), through the
+relay: on a machine without a GPU, rendering hides the network.
 """
 import argparse
 import csv
@@ -25,11 +27,11 @@ from relay import Network, Relay
 
 SKIPPED = 77
 NOTHING = "nothing shown"
-NETWORKS = [Network("open"), Network("20 ± 10 ms", delay_ms=20, jitter_ms=10), Network("50 ± 20 ms", delay_ms=50, jitter_ms=20),
-            Network("1 % loss", delay_ms=20, loss_percent=1), Network("20 Mbit/s", delay_ms=10, rate_mbit=20),
-            Network("5 Mbit/s", delay_ms=10, rate_mbit=5)]
-COLUMNS = ["network", "adapt", "fps", "kbyte_per_frame", "sent_p50_ms", "sent_p95_ms", "pose_p50_ms", "pose_p95_ms", "superseded",
-           "adaptations", "ends_with"]
+NETWORKS = [Network("open"), Network("20 ± 10 ms", delay_ms=20, jitter_ms=10),
+            Network("50 ± 20 ms", delay_ms=50, jitter_ms=20), Network("1 % loss", delay_ms=20, loss_percent=1),
+            Network("20 Mbit/s", delay_ms=10, rate_mbit=20), Network("5 Mbit/s", delay_ms=10, rate_mbit=5)]
+COLUMNS = ["network", "adapt", "fps", "kbyte_per_frame", "sent_p50_ms", "sent_p95_ms", "pose_p50_ms", "pose_p95_ms",
+           "superseded", "adaptations", "ends_with"]
 SERVER_SPACE, CLIENT_SPACE = "fieldcast-server-net", "fieldcast-client-net"
 SERVER_ADDRESS, CLIENT_ADDRESS = "10.77.31.1", "10.77.31.2"
 
@@ -57,8 +59,10 @@ class Namespaces:
         try:
             for space in (SERVER_SPACE, CLIENT_SPACE):
                 sh("ip", "netns", "add", space)
-            sh("ip", "link", "add", "fc-s", "netns", SERVER_SPACE, "type", "veth", "peer", "name", "fc-c", "netns", CLIENT_SPACE)
-            for space, device, address in ((SERVER_SPACE, "fc-s", SERVER_ADDRESS), (CLIENT_SPACE, "fc-c", CLIENT_ADDRESS)):
+            sh("ip", "link", "add", "fc-s", "netns", SERVER_SPACE, "type", "veth",
+               "peer", "name", "fc-c", "netns", CLIENT_SPACE)
+            ends = ((SERVER_SPACE, "fc-s", SERVER_ADDRESS), (CLIENT_SPACE, "fc-c", CLIENT_ADDRESS))
+            for space, device, address in ends:
                 sh("ip", "-n", space, "addr", "add", address + "/24", "dev", device)
                 sh("ip", "-n", space, "link", "set", device, "up")
                 sh("ip", "-n", space, "link", "set", "lo", "up")
@@ -86,15 +90,19 @@ class Server:
     def __init__(self, options, folder, is_protected):
         program = f"{options.programs}/server/fieldcast-server"
         self.folder, self.is_protected, self.port_file = folder, is_protected, folder / "port"
-        words = [program, "--scene", options.scene, "--size", options.size, "--port-file", str(self.port_file), *options.server_flags.split()]
-        if is_protected:
-            sh("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=fieldcast", "-addext",
-               f"subjectAltName=IP:{SERVER_ADDRESS}", "-keyout", str(folder / "key.pem"), "-out", str(folder / "cert.pem"))
+        words = [program, "--scene", options.scene, "--size", options.size, "--port-file", str(self.port_file),
+                 *options.server_flags.split()]
+        if options.synthetic:
+            words = [f"{options.programs}/tests/system/synthetic_server", str(self.port_file)]
+        elif is_protected:
+            certificate, key = str(folder / "cert.pem"), str(folder / "key.pem")
+            sh("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=fieldcast",
+               "-addext", f"subjectAltName=IP:{SERVER_ADDRESS}", "-keyout", key, "-out", certificate)
             token, line = self.make_token(program)
             (folder / "token.txt").write_text(token + "\n", encoding="utf-8")
             (folder / "tokens.txt").write_text(line + "\n", encoding="utf-8")
-            words = ["ip", "netns", "exec", SERVER_SPACE, *words, "--listen", SERVER_ADDRESS + ":0", "--tls-cert", str(folder / "cert.pem"),
-                     "--tls-key", str(folder / "key.pem"), "--tokens", str(folder / "tokens.txt")]
+            words = ["ip", "netns", "exec", SERVER_SPACE, *words, "--listen", SERVER_ADDRESS + ":0", "--tls-cert",
+                     certificate, "--tls-key", key, "--tokens", str(folder / "tokens.txt")]
         else:
             words += ["--listen", "127.0.0.1:0"]
         with open(folder / "server.log", "wb") as log:
@@ -126,11 +134,12 @@ def run_client(options, server, port, adapts):
     """What the client says about its frames."""
     result = server.folder / "client.json"
     result.unlink(missing_ok=True)
-    words = [f"{options.programs}/client/fieldcast-client", "--save", "none", "--json", str(result), *options.client_flags.split()]
+    words = [f"{options.programs}/client/fieldcast-client", "--save", "none", "--json", str(result),
+             *options.client_flags.split()]
     words += ["--adapt", options.adapt] if adapts else []
     if server.is_protected:
-        words = ["ip", "netns", "exec", CLIENT_SPACE, *words, "--server", f"https://{SERVER_ADDRESS}:{server.port}", "--tls-ca",
-                 str(server.folder / "cert.pem"), "--token-file", str(server.folder / "token.txt")]
+        words = ["ip", "netns", "exec", CLIENT_SPACE, *words, "--server", f"https://{SERVER_ADDRESS}:{server.port}",
+                 "--tls-ca", str(server.folder / "cert.pem"), "--token-file", str(server.folder / "token.txt")]
     else:
         words += ["--server", f"127.0.0.1:{port}"]
     with open(server.folder / "client.log", "wb") as log:
@@ -149,8 +158,9 @@ def row_of(network, adapts, result):
     last = result["epochs"][-1] if result["epochs"] else None
     ends_with = f"{last['grid']} of {last['view_size']}, {last['reason'] or 'as asked for'}" if last else NOTHING
     kbyte = round(last["bytes_per_frame"] / 1000, 1) if last else ""
-    return [network.name, "yes" if adapts else "no", round(result["frames_per_second"], 2), kbyte, percentile("send_to_decoded_ms", "p50"),
-            percentile("send_to_decoded_ms", "p95"), percentile("pose_to_shown_ms", "p50"), percentile("pose_to_shown_ms", "p95"),
+    return [network.name, "yes" if adapts else "no", round(result["frames_per_second"], 2), kbyte,
+            percentile("send_to_decoded_ms", "p50"), percentile("send_to_decoded_ms", "p95"),
+            percentile("pose_to_shown_ms", "p50"), percentile("pose_to_shown_ms", "p95"),
             result["superseded"], result["adaptations"], ends_with]
 
 
@@ -178,6 +188,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--programs", default="build/dev", help="build folder")
     parser.add_argument("--method", choices=["auto", "netem", "relay"], default="auto")
+    parser.add_argument("--synthetic", action="store_true")
     parser.add_argument("--seconds", type=float, default=30)
     parser.add_argument("--scene", default="scenes/atelier/atelier.gltf")
     parser.add_argument("--size", default="320x180")
@@ -190,7 +201,7 @@ def main():
     NETWORKS[:] = [network for network in NETWORKS if options.only in network.name]
     print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS), flush=True)
     try:
-        if options.method == "relay":
+        if options.method == "relay" or options.synthetic:
             rows = measure(options, None)
         else:
             with Namespaces() as namespaces:

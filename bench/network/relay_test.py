@@ -37,7 +37,8 @@ class RelayTest(unittest.TestCase):
 
     def seconds(self, network, words, size):
         """From the question to the end of the answer."""
-        with Relay(self.source.port, network) as relay, socket.create_connection(("127.0.0.1", relay.port), PATIENCE_S) as caller:
+        with (Relay(self.source.port, network) as relay,
+              socket.create_connection(("127.0.0.1", relay.port), PATIENCE_S) as caller):
             begin = time.monotonic()
             caller.sendall(words)
             while size > 0:

@@ -61,8 +61,7 @@ protected:
 
     TestFolder folder_;
     RunningServer server_{FIELDCAST_SERVER,
-                          {"--clock", "frames", "--frames", "1", "--frame-log", folder_ / "frames.jsonl", "--trace",
-                           folder_ / "trace.json"}};
+                          {"--frames", "1", "--frame-log", folder_ / "frames.jsonl", "--trace", folder_ / "trace.json"}};
 };
 
 TEST_F(Changes, PicturesAreThoseOfAFreshClientAndNothingIsLostBesides) {

@@ -55,6 +55,10 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
         DEPENDS certificate_authority server_synthetic fieldcast_server_service)
 endif()
 
+# Not a test: what bench/network/networks.py --synthetic measures.
+add_executable(synthetic_server ${CMAKE_CURRENT_LIST_DIR}/synthetic_server.cpp)
+target_link_libraries(synthetic_server PRIVATE server_synthetic fieldcast_server_service fieldcast_warnings)
+
 # Renders; the tests that need a device skip without one.
 fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
