@@ -56,7 +56,9 @@ std::optional<LevelChange> LevelController::decide(TimePoint now) {
         .delivered_bytes_per_second = static_cast<std::uint64_t>(static_cast<double>(window.bytes) / seconds)};
     const double missed_share =
         static_cast<double>(window.missed) / static_cast<double>(window.missed + window.frames);
-    const bool is_starved = missed_share > kAcceptedMisses && window.standing_delay > kStarvedShare * max_queue_delay_;
+    const bool lacks_frames = missed_share > kAcceptedMisses && window.standing_delay > kStarvedShare * max_queue_delay_;
+    const bool is_starved = lacks_frames && starved_before_;
+    starved_before_ = lacks_frames;
     if (window.standing_delay > max_queue_delay_ || is_starved) {
         calm_since_.reset();
         return step_down(measured, missed_share);
@@ -115,6 +117,7 @@ std::optional<LevelChange> LevelController::step_up(const LevelChange& measured,
 
 void LevelController::move_to(std::size_t level) {
     refused_level_.reset();
+    starved_before_ = false;
     previous_level_ = std::exchange(level_, level);
     window_ = {};
     calm_since_.reset();

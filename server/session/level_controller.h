@@ -28,8 +28,8 @@ struct LevelChange {
 ///
 /// Delay is judged by the *smallest* value in a window of half a second and three frames at least: jitter and single
 /// losses leave some frames undelayed, a queue that stands does not. Above the bound it goes down at once, as far as the
-/// excess says is needed; also above two fifths of it when more than a tenth of the frames could not be begun, because then
-/// credits keep the queue short at the price of frames. It goes up by one level after a time below half the bound; if that has to be taken
+/// excess says is needed; also after two windows above two fifths of it in which more than a tenth of the frames could not
+/// be begun, because then credits keep the queue short at the price of frames. It goes up by one level after a time below half the bound; if that has to be taken
 /// back soon, it waits twice as long the next time.
 class LevelController {
 public:
@@ -75,6 +75,7 @@ private:
     std::size_t previous_level_ = 0;
     std::optional<std::size_t> refused_level_; ///< passed over on the next way down
     Window window_;
+    bool starved_before_ = false; ///< frames were missing in the window before
     std::optional<TimePoint> calm_since_; ///< below half the bound, without interruption
     std::optional<TimePoint> stepped_up_; ///< last; unset: no step up is on probation
     std::chrono::seconds patience_{kFirstPatience};
