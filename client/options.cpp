@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/options.h"
 #include "client/play/scene_cache.h"
+#include "client/setting_text.h"
 
 #include "core/base/bearer_token.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iterator>
 #include <numbers>
 #include <sstream>
 
@@ -27,6 +27,8 @@ Examples:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
   Drive the camera of a channel with --camera-control steered round what it looks at:
     fieldcast-client --grid 3x3 --steer orbit:radius=2,seconds=10 --frames 100
+  Other views after three seconds, made here after six, without a new connection:
+    fieldcast-client --grid 3x3 --change 3s:grid=5x5 --change 6s:mode=scene --frames 100
   A server elsewhere, with the token that its operator gave out:
     fieldcast-client --server https://fieldcast.example.org:50151 --token-file token.txt --frames 1
 
@@ -40,6 +42,9 @@ struct FlagText {
     std::vector<std::string> modes{"views"};
     std::string planes = "g-buffer";
     std::vector<std::string> codecs{"zstd"};
+    std::vector<std::string> changes;
+    std::string adaptation;
+    bool adapts = false;
     std::string save = "last";
     std::vector<std::string> write{"quilt", "views"};
     std::string anchor = "lattice";
@@ -93,6 +98,15 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option("--quality", text.quality, "Of lossy codecs, 1 to 100; without it: the server's choice")
         ->check(CLI::Range(1, 100));
     app.add_flag("--no-residual", text.no_residual, "Of mode warp: without what only the corners of the grid see");
+    app.add_option("--adapt", text.adaptation,
+                   "Let the server send less while the connection carries less. Bounds as in "
+                   "quality=40,fps=2,height=180,grid=3x3,jpeg=on,scene=off,delay=100 (these), in this order: JPEG, "
+                   "its quality, fewer frames, smaller views, fewer views, mode scene")
+        ->expected(0, 1);
+    app.add_option("--change", text.changes,
+                   "WHEN:KEY=VALUE,…: ask for something else on the running stream, as in 3s:grid=5x5 or "
+                   "20f:mode=scene,size=320x180; keys: grid, size, spacing, convergence, fov, anchor, mode, planes, "
+                   "codec (zstd+jpeg), quality, max-fps. May be repeated");
     app.add_option("--device", play.device, "Of modes scene and warp: part of the Vulkan device's name");
     app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
@@ -141,40 +155,10 @@ void add_output_flags(CLI::App& app, FlagText& text, Options& options) {
         ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
         ->capture_default_str();
     app.add_option("--json", options.json, "Write the statistics to this file");
+    app.add_option("--frame-log", options.play.timing_files.frame_log,
+                   "FILE.csv or .jsonl: a row per frame, from the server's pose to the display here");
+    app.add_option("--trace", options.play.timing_files.trace, "FILE.json for ui.perfetto.dev: the same as a picture");
     app.add_flag("--verbose", options.is_verbose, "Log every frame");
-}
-
-/// WIDTHxHEIGHT reads like ROWSxCOLS.
-void read_grids(const FlagText& text, net::Wish& wish) {
-    const auto grid = parse_grid(text.grid);
-    if (!grid) {
-        throw UserError("--grid " + text.grid + ": write ROWSxCOLS, as in 4x4");
-    }
-    if (const auto problem = grid_problem(*grid)) {
-        throw UserError("--grid: " + *problem);
-    }
-    wish.rows = grid->rows;
-    wish.cols = grid->cols;
-    if (text.size.empty()) {
-        return;
-    }
-    const auto size = parse_grid(text.size);
-    if (!size || size->rows == 0 || size->cols == 0 || size->rows > kMaxPlaneSide || size->cols > kMaxPlaneSide) {
-        throw UserError("--size " + text.size + ": write WIDTHxHEIGHT, as in 640x360");
-    }
-    wish.width_px = size->rows;
-    wish.height_px = size->cols;
-}
-
-codec::CodecId codec_of(const std::string& word) {
-    return word == "raw"    ? codec::CodecId::kRaw
-           : word == "jpeg" ? codec::CodecId::kJpeg
-           : word == "h264" ? codec::CodecId::kH264
-                            : codec::CodecId::kZstdFiltered;
-}
-
-net::Mode mode_of(const std::string& word) {
-    return word == "scene" ? net::Mode::kScene : word == "warp" ? net::Mode::kWarp : net::Mode::kViews;
 }
 
 bool contains(const std::vector<std::string>& words, const char* word) {
@@ -204,17 +188,29 @@ void read_access(play::ServerOptions& server) {
     access.token = token_of_environment();
 }
 
+/// Each builds on the one before.
+void read_changes(const FlagText& text, play::PlayOptions& play) {
+    for (const std::string& change : text.changes) {
+        play.changes.push_back(read_change(change, play.changes.empty() ? play.wish : play.changes.back().wish));
+    }
+}
+
 void read_text(const FlagText& text, Options& options) {
     read_access(options.play.server);
     net::Wish& wish = options.play.wish;
-    read_grids(text, wish);
-    wish.mode = mode_of(text.modes.front());
+    set_grid("--grid", text.grid, wish);
+    if (!text.size.empty()) {
+        set_size("--size", text.size, wish);
+    }
+    wish.mode = mode_of("--mode", text.modes.front());
     wish.has_residual = !text.no_residual;
     options.falls_back_to_views = wish.mode != net::Mode::kViews && contains(text.modes, "views");
     wish.planes = text.planes == "illumination" ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
     wish.quality = static_cast<std::uint8_t>(text.quality);
     wish.codecs.clear();
-    std::transform(text.codecs.begin(), text.codecs.end(), std::back_inserter(wish.codecs), codec_of);
+    for (const std::string& word : text.codecs) {
+        wish.codecs.push_back(codec_of("--codec", word));
+    }
     wish.anchor = text.anchor == "centre" ? Anchor::kCentre : Anchor::kLattice;
     wish.fovy_rad = text.fov_deg * std::numbers::pi_v<float> / 180.0F;
     wish.spacing_m = text.spacing_m >= 0.0F ? std::optional(text.spacing_m) : std::nullopt;
@@ -225,13 +221,20 @@ void read_text(const FlagText& text, Options& options) {
                         : text.save == "none" ? play::Save::kNone
                                               : play::Save::kLast;
     options.play.products = read_products(text.write);
+    if (const auto problem = timing::problem_with(options.play.timing_files, "--frame-log", "--trace")) {
+        throw UserError(*problem);
+    }
+    if (text.adapts) {
+        wish.adaptation = read_adaptation(text.adaptation);
+    }
+    read_changes(text, options.play);
     if (options.play.products.source_exr && wish.mode != net::Mode::kScene) {
         throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
     }
     if (!text.steer.empty()) {
         options.play.steering = {.poses = play::read_camera_path(text.steer), .waits = !text.steers_now};
     }
-    if (wish.mode == net::Mode::kScene) {
+    if (needs_scene(options.play)) {
         options.play.cache_folder = text.cache.empty() ? play::SceneCache::default_folder().string() : text.cache;
     }
 }
@@ -251,6 +254,7 @@ Invocation read_options(int argc, const char* const* argv) {
     add_output_flags(app, text, options);
     try {
         app.parse(argc, argv);
+        text.adapts = app.count("--adapt") > 0;
         read_text(text, options);
         return {options, "", 0};
     } catch (const CLI::ParseError& error) {

@@ -10,6 +10,7 @@
 #include "server/ops/signals.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
+#include "server/session/frame_timings.h"
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,15 @@ private:
     std::optional<ops::PortFile> port_file_;
 };
 
+/// Every frame of every channel, for clients or not, goes to the files that were asked for.
+void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing::Recorder& recorder) {
+    for (const auto& feed : feeds) {
+        feed->observe([&recorder, name = feed->info().name](const feed::FramePtr& frame) {
+            recorder.add(session::made_frame(name, *frame));
+        });
+    }
+}
+
 /// Until a signal, or until a channel fails.
 bool serve(const ops::StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
     const auto has_failed = [](const std::shared_ptr<feed::Feed>& feed) { return feed->has_failed(); };
@@ -84,9 +94,17 @@ int run(const ops::Config& config, const ops::StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     const auto registry = std::make_shared<metrics::Registry>();
+    std::optional<timing::Recorder> recorder; // before the channels: outlives all that tell it something
+    if (config.timing_files.any()) {
+        recorder.emplace(config.timing_files);
+    }
     const channel::ChannelList channels(config, *registry);
     const auto& feeds = channels.feeds();
-    service::GrpcServer server(config.listen, feeds, config.limits, config.security, registry);
+    if (recorder) {
+        record_frames(feeds, *recorder);
+    }
+    service::GrpcServer server(config.listen, feeds, config.limits, config.security,
+                               {.registry = registry, .recorder = recorder ? &*recorder : nullptr});
     const MetricsServer metrics_server(config, server.gate(), *registry);
     std::optional<ops::PortFile> port_file;
     if (config.port_file) {

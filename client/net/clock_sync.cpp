@@ -54,6 +54,12 @@ std::optional<std::int64_t> ClockSync::client_from_server_ns(std::int64_t server
     return server_ns + sample->client_minus_server_ns;
 }
 
+std::optional<ClockSync::Offset> ClockSync::offset() const {
+    const Sample* sample = best();
+    return sample == nullptr ? std::nullopt
+                             : std::optional(Offset{-sample->client_minus_server_ns, sample->round_trip_ns});
+}
+
 std::optional<std::int64_t> ClockSync::round_trip_ns() const {
     const Sample* sample = best();
     return sample == nullptr ? std::nullopt : std::optional(sample->round_trip_ns);

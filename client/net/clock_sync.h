@@ -28,6 +28,13 @@ public:
     std::optional<std::int64_t> client_from_server_ns(std::int64_t server_ns) const;
     std::optional<std::int64_t> round_trip_ns() const; ///< the shortest of the window
 
+    /// What the exchange with that round trip says.
+    struct Offset {
+        std::int64_t server_minus_client_ns = 0;
+        std::int64_t round_trip_ns = 0;
+    };
+    std::optional<Offset> offset() const;
+
     static constexpr std::size_t kWindow = 16;
 
 private:

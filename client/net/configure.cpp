@@ -50,6 +50,56 @@ void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic sema
     }
 }
 
+void add_adaptation(v1::Configure& message, const AdaptationWish& wish) {
+    v1::Adaptation& bounds = *message.mutable_adaptation();
+    if (wish.allows_jpeg) {
+        bounds.add_codecs(v1::CODEC_JPEG);
+    }
+    bounds.set_min_quality(wish.min_quality);
+    bounds.set_min_frames_per_second(wish.min_frames_per_second);
+    bounds.set_min_view_height_px(wish.min_view_height_px);
+    bounds.set_min_rows(wish.min_rows);
+    bounds.set_min_cols(wish.min_cols);
+    if (wish.allows_scene) {
+        bounds.add_modes(v1::DELIVERY_MODE_SCENE);
+    }
+    bounds.set_max_queue_delay_ms(wish.max_queue_delay_ms);
+}
+
+/// `wish` as it is when everything that a server may change by itself is what it chose, within the bounds. Then a
+/// Configured that has adapted is checked like an answer.
+Wish adapted_wish(const v1::Configured& message, const Wish& wish) {
+    const AdaptationWish& bounds = *wish.adaptation;
+    Wish adapted = wish;
+    if (bounds.allows_jpeg) {
+        adapted.codecs.push_back(codec::CodecId::kJpeg);
+    }
+    if (bounds.allows_scene && message.mode() == v1::DELIVERY_MODE_SCENE && wish.mode == Mode::kViews) {
+        adapted.mode = Mode::kScene;
+        adapted.planes = PlaneWish::kIllumination;
+        return adapted;
+    }
+    const v1::ViewSet& set = message.view_set();
+    const auto lowered = [](std::uint32_t asked, std::uint32_t chosen, std::uint32_t least) {
+        return least > 0 && chosen >= std::min(least, asked) && chosen <= asked ? chosen : asked;
+    };
+    adapted.rows = lowered(wish.rows, set.grid().rows(), bounds.min_rows);
+    adapted.cols = lowered(wish.cols, set.grid().cols(), bounds.min_cols);
+    if (wish.height_px != 0 && bounds.min_view_height_px != 0) {
+        adapted.height_px = lowered(wish.height_px, set.height_px(), bounds.min_view_height_px);
+        adapted.width_px = lowered(wish.width_px, set.width_px(), 1);
+    }
+    return adapted;
+}
+
+Adapted from_proto(const v1::Adapted& message) {
+    return {.level = message.level(),
+            .is_recovery = message.reason() == v1::ADAPTATION_REASON_RECOVERED,
+            .queue_delay_ms = message.queue_delay_ms(),
+            .delivered_bytes_per_second = message.delivered_bytes_per_second(),
+            .change = message.change()};
+}
+
 /// Why a server may not send planes in the codecs that it chose, or nothing.
 std::optional<std::string> codec_problem(const v1::Configured& message, const Wish& wish) {
     for (const v1::PlaneHeader& plane : message.planes()) {
@@ -179,10 +229,17 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     }
     message.set_max_frames_per_second(wish.max_frames_per_second);
     message.set_keeps_key_frames(true);
+    if (wish.adaptation) {
+        add_adaptation(message, *wish.adaptation);
+    }
     return message;
 }
 
-Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish) {
+Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& asked) {
+    if (message.has_adapted() && !asked.adaptation) {
+        return decode_error("Configured: adapted, which was not asked for");
+    }
+    const Wish wish = message.has_adapted() ? adapted_wish(message, asked) : asked;
     Agreement agreement;
     agreement.epoch = message.epoch();
     agreement.channel = message.channel();
@@ -210,6 +267,8 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wi
         return tl::unexpected(limits.error());
     }
     agreement.limits = *limits;
+    agreement.wish = wish;
+    agreement.adapted = message.has_adapted() ? std::optional(from_proto(message.adapted())) : std::nullopt;
     const float rate = message.frames_per_second();
     agreement.frames_per_second = std::isfinite(rate) && rate > 0.0F ? rate : 0.0F;
     return agreement;

@@ -22,6 +22,18 @@ enum class Mode : std::uint8_t {
 /// Of mode kScene.
 enum class PlaneWish : std::uint8_t { kWithGBuffer, kIllumination };
 
+/// What the server may change by itself when the connection carries less than we ask for. Zero: nothing of that kind.
+struct AdaptationWish {
+    bool allows_jpeg = true;
+    std::uint8_t min_quality = 40;
+    float min_frames_per_second = 2.0F;
+    std::uint32_t min_view_height_px = 180;
+    std::uint32_t min_rows = 3;
+    std::uint32_t min_cols = 3;
+    bool allows_scene = false;            ///< we hold the scene and can make views
+    std::uint32_t max_queue_delay_ms = 0; ///< that frames may spend waiting on the way; 0: the server's choice
+};
+
 /// What to ask a server for. Zero or unset: as the server's channel has it.
 struct Wish {
     std::string channel;
@@ -40,6 +52,16 @@ struct Wish {
     std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};
     std::uint8_t quality = 0; ///< of lossy codecs, 1 to 100; 0: the server's choice
     float max_frames_per_second = 0.0F;
+    std::optional<AdaptationWish> adaptation{}; ///< unset: nothing changes unless we ask
+};
+
+/// Why the server has changed a configuration by itself.
+struct Adapted {
+    std::uint32_t level = 0; ///< steps away from what was asked for
+    bool is_recovery = false;
+    std::uint32_t queue_delay_ms = 0;
+    std::uint64_t delivered_bytes_per_second = 0; ///< 0: unknown
+    std::string change;                           ///< for people; printable
 };
 
 /// What the server grants.
@@ -51,11 +73,14 @@ struct Agreement {
     wire::ViewSet view_set;
     wire::FrameLimits limits;       ///< for every frame of this epoch
     float frames_per_second = 0.0F; ///< that the server means to send at most; 0: it does not say
+    Wish wish;                      ///< that it answers
+    std::optional<Adapted> adapted{}; ///< set: a change within `wish.adaptation`, not an answer
 };
 
 v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);
 
-/// Checks that a Configured answers `wish`: mode and grid as asked, everything within what a client can hold.
+/// Checks that a Configured answers `wish`: mode and grid as asked, or within what `wish.adaptation` allows if the server
+/// says that it has adapted; everything within what a client can hold.
 Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish);
 
 /// Why a frame does not fit what was agreed, or nothing. Afterwards views have the agreed number and size, and source

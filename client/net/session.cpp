@@ -11,14 +11,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kRequestId = 1; // a session configures once
 constexpr std::chrono::seconds kSyncPeriod{1};
 constexpr std::uint32_t kMostFailuresInARow = 16; // then the peer does not speak our language
 
-Refused to_refused(const v1::Refused& message) {
+Refused to_refused(const v1::Refused& message, bool was_change) {
     const bool is_transient = message.reason() == v1::REFUSAL_REASON_EXHAUSTED;
     const std::string field = message.field().empty() ? "" : printable(message.field()) + ": ";
-    return {field + printable(message.message()), is_transient};
+    return {field + printable(message.message()), is_transient, was_change};
 }
 
 v1::ClientMessage to_ack(const FrameReport& report, v1::FrameOutcome outcome) {
@@ -33,6 +32,10 @@ v1::ClientMessage to_ack(const FrameReport& report, v1::FrameOutcome outcome) {
     ack.set_rendered_ns(report.rendered_ns);
     ack.set_shown_ns(report.shown_ns);
     ack.set_times_shown(report.shown_ns != 0 ? 1 : 0);
+    if (report.clock) {
+        ack.mutable_clock()->set_server_minus_client_ns(report.clock->server_minus_client_ns);
+        ack.mutable_clock()->set_round_trip_ns(report.clock->round_trip_ns);
+    }
     return message;
 }
 
@@ -42,10 +45,15 @@ Session::Session(const Connection& connection, const Wish& wish, WorkerPool& poo
     : Session(connection, wish, pool, Options{}) {}
 
 Session::Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options)
-    : wish_(wish), stream_(connection, std::move(options.reading)), assembler_(&pool, options.decoding),
+    : stream_(connection, std::move(options.reading)), assembler_(&pool, options.decoding),
       next_sync_(Clock::now()), last_message_(Clock::now()) {
+    configure(wish);
+}
+
+void Session::configure(const Wish& wish) {
+    asked_.push_back({++last_request_id_, wish});
     v1::ClientMessage message;
-    *message.mutable_configure() = to_configure(wish, kRequestId);
+    *message.mutable_configure() = to_configure(wish, last_request_id_);
     stream_.send(std::move(message));
 }
 
@@ -96,7 +104,7 @@ std::optional<Event> Session::handle(ReceivedMessage received) {
     case v1::ServerMessage::kConfigured:
         return handle_configured(message.configured());
     case v1::ServerMessage::kRefused:
-        return to_refused(message.refused());
+        return handle_refused(message.refused());
     case v1::ServerMessage::kFrameChunk:
         return handle_chunk(std::move(received));
     case v1::ServerMessage::kFrameAborted:
@@ -128,16 +136,49 @@ Event Session::broken(const std::string& what) {
 }
 
 std::optional<Event> Session::handle_configured(const v1::Configured& message) {
-    if (agreement_ || message.request_id() != kRequestId) {
+    if (agreement_ && message.epoch() <= agreement_->epoch) {
+        return broken("an epoch that is not newer");
+    }
+    if (message.has_adapted()) {
+        return handle_adapted(message);
+    }
+    if (asked_.empty() || message.request_id() != asked_.front().request_id) {
         return broken("Configured that nobody asked for");
+    }
+    Decoded<Agreement> agreement = from_configured(message, asked_.front().wish);
+    if (!agreement) {
+        return broken(agreement.error().message);
+    }
+    wish_ = std::move(asked_.front().wish);
+    granted_request_id_ = asked_.front().request_id;
+    asked_.pop_front();
+    return begin_epoch(std::move(*agreement));
+}
+
+std::optional<Event> Session::handle_adapted(const v1::Configured& message) {
+    if (!agreement_ || message.request_id() != granted_request_id_ || message.channel() != agreement_->channel) {
+        return broken("an adapted configuration of nothing that was granted");
     }
     Decoded<Agreement> agreement = from_configured(message, wish_);
     if (!agreement) {
         return broken(agreement.error().message);
     }
-    agreement_ = std::move(*agreement);
+    agreement->adapted->change = printable(agreement->adapted->change);
+    return begin_epoch(std::move(*agreement));
+}
+
+Event Session::begin_epoch(Agreement agreement) {
+    agreement_ = std::move(agreement);
     assembler_.begin_epoch(agreement_->epoch, agreement_->limits);
     return *agreement_;
+}
+
+std::optional<Event> Session::handle_refused(const v1::Refused& message) {
+    if (asked_.empty() || message.request_id() != asked_.front().request_id) {
+        return broken("Refused that nobody asked for");
+    }
+    asked_.pop_front();
+    return to_refused(message, agreement_.has_value());
 }
 
 std::optional<Event> Session::handle_chunk(ReceivedMessage received) {
@@ -183,12 +224,14 @@ Event Session::arrived_frame(wire::ReceivedFrame frame, std::int64_t last_byte_n
     arrived.decoded_ns = steady_now_ns();
     arrived.pose_sampled_ns = clock_.client_from_server_ns(frame.server_times.pose_sampled_ns);
     arrived.send_begin_ns = clock_.client_from_server_ns(frame.server_times.send_begin_ns);
+    arrived.clock = clock_.offset();
     FrameReport report;
     report.frame_id = arrived.frame_id;
     report.epoch = frame.epoch;
     report.first_byte_ns = arrived.first_byte_ns;
     report.last_byte_ns = arrived.last_byte_ns;
     report.decoded_ns = arrived.decoded_ns;
+    report.clock = arrived.clock;
     stream_.send(to_ack(report, v1::FRAME_OUTCOME_DECODED));
     arrived.frame = std::move(frame);
     return arrived;

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <string>
 #include <variant>
@@ -25,6 +26,7 @@ struct FrameArrived {
     std::int64_t decoded_ns = 0;
     std::optional<std::int64_t> pose_sampled_ns; ///< server's time on our clock, if known
     std::optional<std::int64_t> send_begin_ns;
+    std::optional<ClockSync::Offset> clock; ///< when it arrived
 };
 
 /// A frame that could not be decoded, or was not what was agreed.
@@ -39,6 +41,7 @@ struct FrameAborted {};
 struct Refused {
     std::string message;
     bool is_transient = false;
+    bool was_change = false; ///< an earlier agreement stays in force
 };
 
 /// The server is leaving: finish, half-close, come back elsewhere or later.
@@ -64,10 +67,12 @@ struct FrameReport {
     std::int64_t decoded_ns = 0;
     std::int64_t rendered_ns = 0; ///< mode kScene
     std::int64_t shown_ns = 0;
+    std::optional<ClockSync::Offset> clock; ///< lets the server place these times on its own clock
 };
 
-/// One stream with one configuration: asks, decodes, acknowledges, keeps the clocks in step. Everything that comes in
-/// is checked. `next` belongs to one thread; `report`, `send` and `half_close` may be called from any.
+/// One stream: asks for a configuration and for other ones later, decodes, acknowledges, keeps the clocks in step.
+/// Everything that comes in is checked. `next` belongs to one thread; `report`, `send` and `half_close` may be called
+/// from any.
 class Session {
 public:
     struct Options {
@@ -78,6 +83,12 @@ public:
     /// `pool` decodes; it must outlive this.
     Session(const Connection& connection, const Wish& wish, WorkerPool& pool);
     Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options);
+
+    /// Asks for something else on the running stream. Answered by an Agreement, from which on all frames are of the new
+    /// configuration, or by Refused. For the thread that calls `next`. At most `kMaxUnanswered` may be unanswered.
+    void configure(const Wish& wish);
+    bool may_configure() const { return asked_.size() < kMaxUnanswered; }
+    static constexpr std::size_t kMaxUnanswered = 8;
 
     /// The next event, or nothing until `deadline`. After Ended there is nothing more.
     std::optional<Event> next(std::chrono::steady_clock::time_point deadline);
@@ -101,13 +112,25 @@ public:
 private:
     std::optional<Event> handle(ReceivedMessage received);
     std::optional<Event> handle_configured(const v1::Configured& message);
+    std::optional<Event> handle_adapted(const v1::Configured& message);
+    Event begin_epoch(Agreement agreement);
+    std::optional<Event> handle_refused(const v1::Refused& message);
     std::optional<Event> handle_chunk(ReceivedMessage received);
     Event failed_frame(std::uint64_t frame_id, std::uint32_t epoch, std::string reason);
     Event arrived_frame(wire::ReceivedFrame frame, std::int64_t last_byte_ns);
     void send_time_sync();
     Event broken(const std::string& what);
 
-    Wish wish_;
+    /// A Configure that was not answered yet.
+    struct Asked {
+        std::uint32_t request_id = 0;
+        Wish wish;
+    };
+
+    std::deque<Asked> asked_; ///< oldest first: that is also the order of the answers
+    std::uint32_t last_request_id_ = 0;
+    std::uint32_t granted_request_id_ = 0;
+    Wish wish_; ///< granted
     MessageStream stream_;
     wire::FrameAssembler assembler_;
     ClockSync clock_;

@@ -19,6 +19,7 @@ void report_times(const Arrival& arrival, bool was_superseded, std::int64_t rend
     report.decoded_ns = arrival.arrived.decoded_ns;
     report.rendered_ns = rendered_ns;
     report.shown_ns = shown_ns;
+    report.clock = arrival.arrived.clock;
     session->report(report);
 }
 

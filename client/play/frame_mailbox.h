@@ -3,6 +3,7 @@
 
 #include "client/net/session.h"
 #include "core/base/guarded.h"
+#include "core/timing/frame_timing.h"
 
 #include <condition_variable>
 #include <memory>
@@ -17,6 +18,8 @@ struct Arrival {
     net::FrameArrived arrived;
     std::weak_ptr<net::Session> session;
     std::optional<std::int64_t> pose_chosen_ns{}; ///< when we chose the pose that this frame is the first to show
+    std::uint32_t session_number = 0; ///< of the run, from 1
+    std::optional<timing::DeliveredFrame> record{}; ///< for the files of timings, if there are any
 };
 
 /// Tells the server what became of a frame. `rendered_ns` and `shown_ns` are 0 for a superseded one.

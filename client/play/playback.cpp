@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/playback.h"
-#include "client/play/scene_player.h"
-#include "client/play/scene_source.h"
-#include "client/play/warp_player.h"
+#include "client/play/frame_record.h"
+#include "client/play/render_side.h"
 
 #include "core/base/log.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -15,57 +15,55 @@
 namespace fieldcast::client::play {
 namespace {
 
-/// Device and renderers of modes kScene and kWarp; built in this order, destroyed in reverse.
-struct RenderSide {
-    gpu::Device device;
-    std::optional<scene::SceneHash> hash; ///< of the scene that we have
-    std::optional<ScenePlayer> scene;     ///< of mode kScene
-    std::optional<WarpPlayer> warp;       ///< of mode kWarp
-
-    explicit RenderSide(const gpu::DeviceOptions& options) : device(options) {}
-    Decoded<Views> play(const SourceFrame& frame, const wire::ViewSet& set) {
-        return scene ? scene->play(frame, set) : warp->play(frame, set);
-    }
-};
-
-std::unique_ptr<RenderSide> make_render_side(const PlayOptions& options, const std::stop_token& stop) {
-    gpu::DeviceOptions device_options;
-    device_options.name_contains = options.device;
-    const bool is_scene = options.wish.mode == net::Mode::kScene;
-    std::unique_ptr<RenderSide> side;
-    try {
-        side = std::make_unique<RenderSide>(device_options);
-    } catch (const gpu::NoDeviceError& error) {
-        throw NoDeviceForViews(std::string(is_scene ? "mode scene" : "mode warp") +
-                               " makes its views on a Vulkan device of this machine: " + error.what() + ". With --mode views the server makes them.");
-    }
-    log::info("device chosen", {{"name", side->device.info().name}, {"driver", side->device.info().driver}});
-    if (!is_scene) {
-        side->warp.emplace(side->device);
-        return side;
-    }
-    scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
-    side->hash = scene.hash;
-    side->scene.emplace(side->device, std::move(scene), options.traversal);
-    return side;
-}
-
 /// A shown frame; kept as long as it may have to be written.
 struct Shown {
     std::uint64_t frame_id = 0;
     ViewGrid grid;
     Views views;
+    net::Mode mode = net::Mode::kViews;
 };
 
+constexpr std::size_t kRememberedEpochs = 256;
 constexpr std::size_t kRememberedFrames = 1U << 16; // statistics of endless runs are about the last ones
 
 std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, std::int64_t end_ns) {
     return begin_ns ? std::optional(static_cast<double>(end_ns - *begin_ns) * 1e-6) : std::nullopt;
 }
 
+std::string mode_text(const net::Agreement& agreement) {
+    switch (agreement.mode) {
+    case net::Mode::kViews:
+        return "views";
+    case net::Mode::kWarp:
+        return agreement.wish.has_residual ? "warp" : "warp, without residual layer";
+    case net::Mode::kScene:
+        break;
+    }
+    return agreement.wish.planes == net::PlaneWish::kIllumination ? "scene, illumination" : "scene, with G-buffer";
+}
+
+std::string grid_text(const ViewGrid& grid) {
+    return std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
+}
+
+/// Empty: we asked for it.
+std::string reason_text(const net::Agreement& agreement) {
+    if (!agreement.adapted) {
+        return "";
+    }
+    const net::Adapted& adapted = *agreement.adapted;
+    return adapted.change + ", " +
+           (adapted.is_recovery ? "recovered" : "queue of " + std::to_string(adapted.queue_delay_ms) + " ms");
+}
+
+std::string size_text(const wire::ViewSet& set) {
+    return std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
+}
+
 class Player {
 public:
-    Player(const PlayOptions& options, RenderSide* render_side) : options_(options), render_side_(render_side) {}
+    Player(const PlayOptions& options, RenderSide* render_side, timing::Recorder* recorder)
+        : options_(options), render_side_(render_side), recorder_(recorder) {}
 
     /// False if the frame could not be shown.
     bool show(Arrival arrival);
@@ -79,12 +77,15 @@ private:
     Decoded<Shown> make(Arrival& arrival);
     void write(const std::filesystem::path& folder) const;
     void record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t rendered_ns, std::int64_t shown_ns);
+    void count_epoch(const Arrival& arrival);
 
     const PlayOptions& options_;
-    RenderSide* render_side_; ///< null in mode kViews
+    RenderSide* render_side_;    ///< null if all views come finished
+    timing::Recorder* recorder_; ///< null: none
     std::optional<Shown> last_;
     std::uint64_t shown_count_ = 0;
     std::deque<ShownFrame> frames_; ///< the last ones
+    std::deque<EpochSummary> epochs_; ///< the last ones
 };
 
 Decoded<Shown> Player::make(Arrival& arrival) {
@@ -92,12 +93,13 @@ Decoded<Shown> Player::make(Arrival& arrival) {
     Shown shown;
     shown.frame_id = arrival.arrived.frame_id;
     shown.grid = set.grid;
+    shown.mode = arrival.agreement.mode;
     if (auto* received = std::get_if<wire::ReceivedViews>(&arrival.arrived.frame.content)) {
         shown.views = std::move(received->views);
         return shown;
     }
-    FC_ASSERT(render_side_ != nullptr, "source frames are not agreed on in mode kViews");
-    Decoded<Views> views = render_side_->play(std::get<SourceFrame>(arrival.arrived.frame.content), set);
+    FC_ASSERT(render_side_ != nullptr, "source frames are agreed on only where views are made here");
+    Decoded<Views> views = render_side_->play(shown.mode, std::get<SourceFrame>(arrival.arrived.frame.content), set);
     if (!views) {
         return tl::unexpected(views.error());
     }
@@ -120,7 +122,7 @@ bool Player::show(Arrival arrival) {
         write(options_.out / name.data());
     }
     const std::int64_t shown_ns = net::steady_now_ns();
-    report_times(arrival, false, render_side_ != nullptr ? rendered_ns : 0, shown_ns);
+    report_times(arrival, false, last_->mode != net::Mode::kViews ? rendered_ns : 0, shown_ns);
     record(arrival, begin_ns, rendered_ns, shown_ns);
     return true;
 }
@@ -134,20 +136,52 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
     frame.motion_to_photon_ms = ms_between(arrival.pose_chosen_ns, shown_ns);
     frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
-    frame.render_ms = render_side_ != nullptr ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
+    const bool made_views = last_->mode != net::Mode::kViews;
+    frame.render_ms = made_views ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
     add_discards(last_->views, frame);
+    if (arrival.record) {
+        timing::DeliveredFrame full = *arrival.record;
+        full.outcome = timing::Outcome::kShown;
+        full.rendered_ns = made_views ? rendered_ns : 0;
+        full.shown_ns = shown_ns;
+        add_record(*recorder_, std::move(full));
+    }
     frames_.push_back(frame);
+    count_epoch(arrival);
     ++shown_count_;
     if (frames_.size() > kRememberedFrames) {
         frames_.pop_front();
     }
 }
 
+void Player::count_epoch(const Arrival& arrival) {
+    const net::Agreement& agreement = arrival.agreement;
+    const bool is_new = epochs_.empty() || epochs_.back().epoch != agreement.epoch ||
+                        epochs_.back().session != arrival.session_number;
+    if (is_new) {
+        epochs_.push_back({.session = arrival.session_number,
+                           .epoch = agreement.epoch,
+                           .mode = mode_text(agreement),
+                           .grid = grid_text(agreement.view_set.grid),
+                           .view_size = size_text(agreement.view_set),
+                           .first_frame = last_->frame_id,
+                           .reason = reason_text(agreement)});
+    }
+    EpochSummary& epoch = epochs_.back();
+    ++epoch.shown;
+    epoch.last_frame = last_->frame_id;
+    const auto bytes = static_cast<double>(arrival.arrived.frame.payload_bytes);
+    epoch.bytes_per_frame += (bytes - epoch.bytes_per_frame) / static_cast<double>(epoch.shown);
+    if (epochs_.size() > kRememberedEpochs) {
+        epochs_.pop_front();
+    }
+}
+
 void Player::write(const std::filesystem::path& folder) const {
     std::optional<SourceFrame> source;
-    if (options_.products.source_exr && render_side_ != nullptr && render_side_->scene) {
-        source = render_side_->scene->source(); // of the frame played last, which is the one shown last
+    if (options_.products.source_exr && last_->mode == net::Mode::kScene) {
+        source = render_side_->source(); // of the frame played last, which is the one shown last
     }
     const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
     image::write_light_field(folder, picture, options_.products);
@@ -162,6 +196,7 @@ void Player::finish() {
 Summary Player::summary(const StreamCounts& counts) const {
     Summary summary = summarise({frames_.begin(), frames_.end()}, counts);
     summary.shown = shown_count_;
+    summary.epochs.assign(epochs_.begin(), epochs_.end());
     return summary;
 }
 
@@ -176,28 +211,39 @@ Progress Player::progress() const {
 }
 
 void describe(const PlayOptions& options, const std::optional<net::Agreement>& agreement, Summary& summary) {
-    const net::Wish& wish = options.wish;
-    const bool rebuilds = wish.planes == net::PlaneWish::kIllumination;
-    summary.mode = wish.mode == net::Mode::kViews  ? "views"
-                   : wish.mode == net::Mode::kWarp ? (wish.has_residual ? "warp" : "warp, without residual layer")
-                   : rebuilds                      ? "scene, illumination"
-                                                   : "scene, with G-buffer";
-    summary.grid = std::to_string(wish.rows) + "x" + std::to_string(wish.cols);
+    net::Agreement asked;
+    asked.mode = options.wish.mode;
+    asked.wish = options.wish;
+    summary.mode = mode_text(agreement.value_or(asked));
+    summary.grid = std::to_string(options.wish.rows) + "x" + std::to_string(options.wish.cols);
     if (agreement) {
-        const wire::ViewSet& set = agreement->view_set;
-        summary.view_size = std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
+        summary.grid = grid_text(agreement->view_set.grid);
+        summary.view_size = size_text(agreement->view_set);
     }
 }
 
 } // namespace
 
+bool asks_for(const PlayOptions& options, net::Mode mode) {
+    return options.wish.mode == mode ||
+           std::ranges::any_of(options.changes, [&](const Change& change) { return change.wish.mode == mode; });
+}
+
+bool needs_scene(const PlayOptions& options) {
+    const bool may_adapt = options.wish.adaptation && options.wish.adaptation->allows_scene;
+    return may_adapt || asks_for(options, net::Mode::kScene);
+}
+
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
-    std::unique_ptr<RenderSide> render_side;
-    if (options.wish.mode != net::Mode::kViews) {
-        render_side = make_render_side(options, stop);
+    const std::unique_ptr<RenderSide> render_side = RenderSide::make(options, stop);
+    std::optional<timing::Recorder> recorder;
+    if (options.timing_files.any()) {
+        recorder.emplace(options.timing_files);
     }
-    Receiver receiver(options.server, options.wish, render_side ? render_side->hash : std::nullopt, options.steering);
-    Player player(options, render_side.get());
+    timing::Recorder* const records = recorder ? &*recorder : nullptr;
+    Receiver receiver(options.server, options.wish, render_side ? render_side->scene_hash() : std::nullopt,
+                      {.steering = options.steering, .changes = options.changes, .recorder = records});
+    Player player(options, render_side.get(), records);
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };
     while (!is_complete()) {

@@ -19,16 +19,24 @@ struct PlayOptions {
     ServerOptions server;
     net::Wish wish;
     std::optional<SteeringOptions> steering{}; ///< moves the camera, too
+    std::vector<Change> changes{}; ///< on the running stream, in their order
     std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
     Save save = Save::kLast;
     std::filesystem::path out = "out";
     image::LightFieldProducts products;
+    timing::RecorderFiles timing_files;
     // Of modes that make views here:
     std::string device; ///< part of the name; empty: the best
     // Of mode kScene:
     std::filesystem::path cache_folder;
     std::string traversal = "auto"; ///< as in scene::choose_traversal
 };
+
+/// Whether frames of that mode are asked for, at once or by a change.
+bool asks_for(const PlayOptions& options, net::Mode mode);
+
+/// Whether this machine may have to make views from the scene.
+bool needs_scene(const PlayOptions& options);
 
 /// Where a run stands, for a line of text.
 struct Progress {

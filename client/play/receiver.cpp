@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/receiver.h"
 
+#include "client/play/frame_record.h"
+
 #include "core/base/log.h"
 #include "core/scene/bundle.h"
 
@@ -24,6 +26,7 @@ struct Receiver::SessionState {
     std::shared_ptr<net::Session> session;
     Attempts* attempts = nullptr;
     std::optional<net::Agreement> agreement;
+    net::Wish granted; ///< what `agreement` answers
     std::optional<SessionEnd> end;
     std::optional<Clock::time_point> cut_at; ///< we half-closed; the server has so long to finish
 
@@ -34,9 +37,10 @@ struct Receiver::SessionState {
 };
 
 Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-                   std::optional<SteeringOptions> steering)
-    : server_(server), wish_(wish), scene_hash_(scene_hash),
-      pilot_(steering ? std::optional<Pilot>(std::move(*steering)) : std::nullopt),
+                   Extras extras)
+    : server_(server), wish_(wish), changes_(std::move(extras.changes)), scene_hash_(scene_hash),
+      pilot_(extras.steering ? std::optional<Pilot>(std::move(*extras.steering)) : std::nullopt),
+      recorder_(extras.recorder),
       pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -85,6 +89,7 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
         if (pilot_) {
             pilot_->look(*state.session, Clock::now());
         }
+        ask_for_change(state);
         if (stop.stop_requested() && !state.cut_at) {
             state.leave(kFinishGrace);
         }
@@ -103,9 +108,7 @@ void Receiver::handle(net::Event event, SessionState& state) {
                               log::warn("frame failed", {{"reason", failed.reason}});
                           },
                           [&](net::FrameAborted&) { ++counts_.lock()->aborted; },
-                          [&](net::Refused& refused) {
-                              state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
-                          },
+                          [&](net::Refused& no) { refused(no, state); },
                           [&](net::GoingAway& going) {
                               log::info("server is going away", {{"reason", going.reason}});
                               state.leave(std::clamp<std::chrono::milliseconds>(going.deadline, 100ms, 10s));
@@ -120,6 +123,26 @@ void Receiver::handle(net::Event event, SessionState& state) {
                event);
 }
 
+void Receiver::ask_for_change(SessionState& state) {
+    if (state.cut_at || state.end || !state.session->may_configure()) {
+        return;
+    }
+    if (auto wish = changes_.due(Clock::now())) {
+        wish_ = std::move(*wish);
+        state.session->configure(wish_);
+    }
+}
+
+/// Without room for it the stream goes on as it was; what cannot be had at all was asked for by mistake.
+void Receiver::refused(const net::Refused& refused, SessionState& state) {
+    if (refused.was_change && refused.is_transient) {
+        log::warn("change refused", {{"reason", refused.message}});
+        wish_ = state.granted;
+        return;
+    }
+    state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
+}
+
 void Receiver::agreed(net::Agreement agreement, SessionState& state) {
     if (scene_hash_ && agreement.scene_hash != *scene_hash_) {
         state.end = SessionEnd{"channel '" + agreement.channel + "' now shows another scene, " +
@@ -127,10 +150,28 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
                                false};
         return;
     }
-    ++counts_.lock()->sessions;
-    log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
+    changes_.agreed(Clock::now());
+    if (agreement.adapted) {
+        ++counts_.lock()->adaptations;
+        log::info("server adapted", {{"epoch", agreement.epoch},
+                                     {"level", agreement.adapted->level},
+                                     {"change", agreement.adapted->change},
+                                     {"queue_delay_ms", agreement.adapted->queue_delay_ms},
+                                     {"delivered_bytes_per_second", agreement.adapted->delivered_bytes_per_second}});
+        state.agreement = std::move(agreement);
+        return;
+    }
+    state.granted = agreement.wish;
+    if (state.agreement) {
+        ++counts_.lock()->changes;
+        log::info("configuration changed", {{"epoch", agreement.epoch}});
+    } else {
+        ++counts_.lock()->sessions;
+        log::info("session opened", {{"channel", agreement.channel}, {"epoch", agreement.epoch}});
+    }
+    const bool is_first = !state.agreement;
     state.agreement = std::move(agreement);
-    if (pilot_) {
+    if (pilot_ && is_first) {
         pilot_->begin(*state.session);
     }
 }
@@ -146,11 +187,24 @@ void Receiver::steered(const net::SteeringNews& news, SessionState& state) {
 
 void Receiver::arrived(net::FrameArrived frame, SessionState& state) {
     state.attempts->succeeded();
+    changes_.frame_arrived();
     log::debug("frame arrived", {{"frame", frame.frame_id}, {"bytes", frame.frame.payload_bytes}});
     const auto chosen_ns = pilot_ ? pilot_->chosen_ns(frame.frame.header()) : std::nullopt;
-    if (const auto replaced = mailbox_.put({*state.agreement, std::move(frame), state.session, chosen_ns})) {
+    Arrival arrival{.agreement = *state.agreement,
+                    .arrived = std::move(frame),
+                    .session = state.session,
+                    .pose_chosen_ns = chosen_ns,
+                    .session_number = counts_.lock()->sessions};
+    if (recorder_ != nullptr) {
+        arrival.record = frame_record(arrival.arrived, arrival.agreement.channel, arrival.session_number);
+    }
+    if (auto replaced = mailbox_.put(std::move(arrival))) {
         ++counts_.lock()->superseded;
         report_times(*replaced, true, 0, 0);
+        if (replaced->record) {
+            replaced->record->outcome = timing::Outcome::kSuperseded;
+            add_record(*recorder_, std::move(*replaced->record));
+        }
     }
 }
 

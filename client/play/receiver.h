@@ -3,9 +3,11 @@
 
 #include "client/net/session.h"
 #include "client/play/attempts.h"
+#include "client/play/change.h"
 #include "client/play/frame_mailbox.h"
 #include "client/play/pilot.h"
 #include "client/play/statistics.h"
+#include "core/timing/recorder.h"
 
 #include <chrono>
 #include <optional>
@@ -32,10 +34,15 @@ struct Failure {
 /// thread, which may block on the network and on decoding.
 class Receiver {
 public:
+    struct Extras {
+        std::optional<SteeringOptions> steering{}; ///< moves the camera, too
+        std::vector<Change> changes{};             ///< are asked for on the running stream
+        /// Gets frames that are superseded, and arrivals a record; null: none. Must outlive this.
+        timing::Recorder* recorder = nullptr;
+    };
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
-    /// `steering`: moves the camera, too.
     Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-             std::optional<SteeringOptions> steering = std::nullopt);
+             Extras extras);
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
@@ -59,13 +66,17 @@ private:
     SessionEnd run_session(const std::stop_token& stop, Attempts& attempts);
     void handle(net::Event event, SessionState& state);
     void agreed(net::Agreement agreement, SessionState& state);
+    void refused(const net::Refused& refused, SessionState& state);
+    void ask_for_change(SessionState& state);
     void arrived(net::FrameArrived frame, SessionState& state);
     void steered(const net::SteeringNews& news, SessionState& state);
 
     ServerOptions server_;
-    net::Wish wish_;
+    net::Wish wish_; ///< asked for last, and again after a reconnect
+    ChangeSchedule changes_;
     std::optional<scene::SceneHash> scene_hash_;
     std::optional<Pilot> pilot_; ///< for the thread
+    timing::Recorder* recorder_;
     WorkerPool pool_;
     FrameMailbox mailbox_;
     Guarded<StreamCounts> counts_;

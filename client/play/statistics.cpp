@@ -131,6 +131,14 @@ std::string to_table(const Summary& s) {
     table += line("%-20s %llu superseded, %llu aborted, %llu failed\n", "not shown", number(s.counts.superseded),
                   number(s.counts.aborted), number(s.counts.failed));
     table += line("%-20s %u\n", "sessions", s.counts.sessions);
+    for (const EpochSummary& epoch : s.epochs) {
+        if (s.epochs.size() > 1) {
+            table += line("%-20s %s, %s views of %s: %llu shown, %.0f bytes per frame%s%s\n",
+                          ("epoch " + std::to_string(epoch.epoch)).c_str(), epoch.mode.c_str(), epoch.grid.c_str(),
+                          epoch.view_size.c_str(), number(epoch.shown), epoch.bytes_per_frame,
+                          epoch.reason.empty() ? "" : "; ", epoch.reason.c_str());
+        }
+    }
     return table;
 }
 
@@ -158,6 +166,21 @@ std::string to_json(const Summary& s) {
     json["aborted"] = s.counts.aborted;
     json["failed"] = s.counts.failed;
     json["sessions"] = s.counts.sessions;
+    json["changes"] = s.counts.changes;
+    json["adaptations"] = s.counts.adaptations;
+    json["epochs"] = nlohmann::json::array();
+    for (const EpochSummary& epoch : s.epochs) {
+        json["epochs"].push_back({{"session", epoch.session},
+                                  {"epoch", epoch.epoch},
+                                  {"mode", epoch.mode},
+                                  {"grid", epoch.grid},
+                                  {"view_size", epoch.view_size},
+                                  {"shown", epoch.shown},
+                                  {"first_frame", epoch.first_frame},
+                                  {"last_frame", epoch.last_frame},
+                                  {"bytes_per_frame", epoch.bytes_per_frame},
+                                  {"reason", epoch.reason}});
+    }
     json["frame_ids"] = s.frame_ids;
     return json.dump(2) + "\n";
 }

@@ -33,10 +33,26 @@ void add_discards(const Views& views, ShownFrame& frame);
 
 /// Frames that were not shown, by reason, and what happened to the connection.
 struct StreamCounts {
-    std::uint32_t sessions = 0;   ///< configurations granted; 1 without reconnects
+    std::uint32_t sessions = 0;   ///< streams that were granted a configuration; 1 without reconnects
+    std::uint64_t changes = 0;    ///< further configurations on running streams that we asked for
+    std::uint64_t adaptations = 0; ///< those that the server made by itself
     std::uint64_t superseded = 0; ///< complete, but a newer one was complete before it could be shown
     std::uint64_t aborted = 0;    ///< by the server, half way
     std::uint64_t failed = 0;     ///< undecodable, or not what was agreed
+};
+
+/// Frames of one configuration, in the order in which they were shown.
+struct EpochSummary {
+    std::uint32_t session = 0; ///< epochs count within one
+    std::uint32_t epoch = 0;
+    std::string mode;
+    std::string grid;
+    std::string view_size;
+    std::uint64_t shown = 0;
+    std::uint64_t first_frame = 0; ///< ids
+    std::uint64_t last_frame = 0;
+    double bytes_per_frame = 0.0;
+    std::string reason; ///< empty: the client asked for it
 };
 
 struct Percentiles {
@@ -66,6 +82,7 @@ struct Summary {
     double plane_percent = 0.0;
     double normal_percent = 0.0;
     std::vector<std::uint64_t> frame_ids; ///< shown, in order
+    std::vector<EpochSummary> epochs;     ///< the last ones
 };
 
 Summary summarise(const std::vector<ShownFrame>& frames, const StreamCounts& counts);

@@ -42,6 +42,7 @@ struct ServerTimes {
     std::int64_t pose_sampled_ns = 0;
     std::int64_t render_begin_ns = 0;
     std::int64_t render_end_ns = 0;
+    std::int64_t encode_begin_ns = 0;
     std::int64_t encode_end_ns = 0;
     std::int64_t send_begin_ns = 0; ///< header chunk handed to the transport
     std::int64_t send_end_ns = 0;   ///< last strip chunk handed to the transport

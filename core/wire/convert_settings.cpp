@@ -230,13 +230,14 @@ void to_proto(const ServerTimes& times, v1::ServerTimes& message) {
     message.set_pose_sampled_ns(times.pose_sampled_ns);
     message.set_render_begin_ns(times.render_begin_ns);
     message.set_render_end_ns(times.render_end_ns);
+    message.set_encode_begin_ns(times.encode_begin_ns);
     message.set_encode_end_ns(times.encode_end_ns);
     message.set_send_begin_ns(times.send_begin_ns);
     message.set_send_end_ns(times.send_end_ns);
 }
 
 ServerTimes from_proto(const v1::ServerTimes& message) {
-    return {message.pose_sampled_ns(), message.render_begin_ns(), message.render_end_ns(),
+    return {message.pose_sampled_ns(), message.render_begin_ns(), message.render_end_ns(), message.encode_begin_ns(),
             message.encode_end_ns(),   message.send_begin_ns(),   message.send_end_ns()};
 }
 

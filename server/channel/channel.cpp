@@ -115,7 +115,7 @@ void Channel::encode_loop(const std::stop_token& stop) {
         const auto begin = Clock::now();
         const feed::FramePtr encoded = encoder.encode(std::move(*frame), begin);
         const std::chrono::duration<double, std::milli> encode_time = Clock::now() - begin;
-        metrics_.observe_encoding(encode_time);
+        metrics_.count_encoded(*encoded, encode_time);
         log::debug(
             "frame encoded",
             {{"frame", encoded->header.frame_id}, {"key_frame", encoded->key_frame_id}, {"ms", encode_time.count()}});

@@ -21,6 +21,8 @@ ChannelMetrics::ChannelMetrics(metrics::Registry& registry, const std::string& c
           {{"channel", channel}})),
       view_pixels_(registry.counter({"fieldcast_view_pixels_total", "Pixels of all views that were made."},
                                     {{"channel", channel}})),
+      asked_views_(view_counter("asked")), rendered_views_(view_counter("rendered")),
+      encoded_views_(view_counter("encoded")),
       render_(registry.histogram({"fieldcast_render_seconds", "Wall time of rendering a frame with all its views."},
                                  {{"channel", channel}}, metrics::second_bounds())),
       encode_(registry.histogram({"fieldcast_encode_seconds", "Wall time of encoding a frame in all its forms."},
@@ -32,6 +34,13 @@ ChannelMetrics::ChannelMetrics(metrics::Registry& registry, const std::string& c
     for (const char* const reason : {"out_of_frustum", "id", "plane", "normal"}) {
         hole_pixels_[reason] = &registry.counter(kHoles, {{"channel", channel}, {"reason", reason}});
     }
+}
+
+metrics::Counter& ChannelMetrics::view_counter(const char* step) const {
+    return registry_.counter({"fieldcast_views_total",
+                              "Views of all frames, by step: asked for by clients, rendered, encoded. Asked for beyond "
+                              "encoded: shared by clients."},
+                             {{"channel", channel_}, {"step", step}});
 }
 
 metrics::Histogram& ChannelMetrics::stage(const std::string& name) {
@@ -53,7 +62,9 @@ void ChannelMetrics::count_rendered(const RenderedFrame& frame, std::uint64_t in
     for (const StageTime& time : frame.header.render_times) {
         observe_stage(time);
     }
+    asked_views_.add(frame.asked_views);
     for (const RenderedViews& rendered : frame.views) {
+        rendered_views_.add(rendered.views.views.size());
         const auto& times = rendered.views.header.render_times; // the source's, then those of the views
         for (std::size_t i = frame.header.render_times.size(); i < times.size(); ++i) {
             observe_stage(times[i]);
@@ -73,8 +84,11 @@ void ChannelMetrics::observe_turn(const Turn& turn) {
     turn_.observe(turn.used.count());
 }
 
-void ChannelMetrics::observe_encoding(std::chrono::duration<double> seconds) {
+void ChannelMetrics::count_encoded(const feed::EncodedFrame& frame, std::chrono::duration<double> seconds) {
     encode_.observe(seconds.count());
+    for (const wire::EncodedViews& views : frame.views) {
+        encoded_views_.add(views.views.size());
+    }
 }
 
 } // namespace fieldcast::channel

@@ -22,17 +22,21 @@ public:
         std::chrono::duration<double> used;
     };
     void observe_turn(const Turn& turn);
-    void observe_encoding(std::chrono::duration<double> seconds);
+    void count_encoded(const feed::EncodedFrame& frame, std::chrono::duration<double> seconds);
 
 private:
     void observe_stage(const StageTime& time);
     metrics::Histogram& stage(const std::string& name);
+    metrics::Counter& view_counter(const char* step) const;
 
     metrics::Registry& registry_;
     const std::string channel_;
     metrics::Counter& frames_;
     metrics::Counter& invalid_samples_;
     metrics::Counter& view_pixels_;
+    metrics::Counter& asked_views_;
+    metrics::Counter& rendered_views_;
+    metrics::Counter& encoded_views_;
     std::map<std::string, metrics::Counter*> hole_pixels_; ///< by reason
     metrics::Histogram& render_;
     metrics::Histogram& encode_;

@@ -8,6 +8,11 @@ namespace fieldcast::channel {
 
 namespace {
 
+std::int64_t steady_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
 /// Views of that geometry and size in the key frame; null if it has none.
 const Views* find_views(const RenderedFrame& key, const RenderedViews& wanted) {
     const auto found = std::ranges::find_if(key.views, [&](const RenderedViews& views) {
@@ -29,6 +34,7 @@ wire::KeyFrame FrameEncoder::key_for(const RenderedFrame& frame, bool is_key) co
 }
 
 feed::FramePtr FrameEncoder::encode(RenderedFrame frame, TimePoint now) {
+    frame.times.encode_begin_ns = steady_ns();
     const bool is_key = key_frames_.next(now, frame.needs_key || frame.header.cut);
     wire::KeyFrame key = key_for(frame, is_key);
     auto encoded = std::make_shared<feed::EncodedFrame>();
@@ -44,8 +50,7 @@ feed::FramePtr FrameEncoder::encode(RenderedFrame frame, TimePoint now) {
             encoded->views.push_back(wire::encode_views(rendered.views, format, key, pool_));
         }
     }
-    const auto end = std::chrono::steady_clock::now().time_since_epoch();
-    encoded->times.encode_end_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end).count();
+    encoded->times.encode_end_ns = steady_ns();
     if (is_key) {
         key_ = std::make_unique<const RenderedFrame>(std::move(frame));
     }

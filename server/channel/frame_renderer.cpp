@@ -88,6 +88,7 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
 
 RenderedFrame FrameRenderer::render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand) {
     RenderedFrame frame;
+    frame.asked_views = demand.asked_views;
     frame.needs_alone = demand.needs_alone;
     frame.needs_key = demand.needs_key;
     frame.times.pose_sampled_ns = steady_ns();

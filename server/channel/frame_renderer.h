@@ -35,8 +35,9 @@ struct RenderedFrame {
     std::optional<SourceFrame> source; ///< the planes named in `choices`
     std::vector<wire::PlaneChoice> choices;
     std::vector<RenderedViews> views;
-    bool needs_alone = false; ///< as in feed::Demand
-    bool needs_key = false;   ///< as in feed::Demand
+    std::uint64_t asked_views = 0; ///< as in feed::Demand
+    bool needs_alone = false;      ///< as in feed::Demand
+    bool needs_key = false;        ///< as in feed::Demand
 };
 
 /// A scene on the device with both renderers, for one channel. Not thread-safe; may be used by one thread after

@@ -89,6 +89,9 @@ void Feed::publish(const FramePtr& frame) {
         auto state = state_.lock();
         state->waiting_since = std::chrono::steady_clock::now();
         state->latest = {.frame_id = frame->header.frame_id, .scene_time_ns = frame->header.scene_time_ns};
+        if (state->observer) {
+            callbacks.push_back(state->observer);
+        }
         for (const auto& [id, subscriber] : state->subscribers) {
             callbacks.push_back(subscriber.callback);
         }

@@ -55,8 +55,13 @@ public:
     /// Sleeps until somebody wants something. False: `stop` was requested.
     bool wait_for_demand(const std::stop_token& stop);
 
-    /// Gives `frame` to every subscriber.
+    /// Gives `frame` to every subscriber, and to the observer before.
     void publish(const FramePtr& frame);
+
+    /// `observer` sees every frame from now on without wanting anything.
+    void observe(FrameCallback observer) {
+        state_.lock()->observer = std::make_shared<const FrameCallback>(std::move(observer));
+    }
 
     LatestFrame latest();
 
@@ -77,6 +82,7 @@ private:
     };
     struct State {
         std::map<std::uint64_t, Subscriber> subscribers;
+        std::shared_ptr<const FrameCallback> observer; ///< may be null
         std::uint64_t next_id = 1;
         LatestFrame latest;
         std::chrono::steady_clock::time_point waiting_since; ///< the last frame, or the first subscriber after a pause

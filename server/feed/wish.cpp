@@ -21,6 +21,7 @@ void add(Demand& demand, const ViewsWish& wish) {
         views = demand.views.insert(views, ViewDemand{.format = wish.format, .positions = {}});
     }
     const std::vector<LatticePosition> wanted = lattice_positions(wish.grid);
+    demand.asked_views += wanted.size();
     views->positions.insert(views->positions.end(), wanted.begin(), wanted.end());
     std::ranges::sort(views->positions);
     const auto repeated = std::ranges::unique(views->positions);

@@ -45,6 +45,7 @@ struct ViewDemand {
 struct Demand {
     std::vector<wire::PlaneChoice> planes; ///< each once
     std::vector<ViewDemand> views;         ///< each format once
+    std::uint64_t asked_views = 0;         ///< over all wishes, also those that several have in common
     bool needs_alone = false;              ///< somebody lacks the key frame
     bool needs_key = false;                ///< and would keep one
 

@@ -110,6 +110,9 @@ void check_serving(const Config& config, Problems& problems) {
            "only together with --port-file, which tells the port");
     const Problems of_limits = limit_problems(config);
     problems.insert(problems.end(), of_limits.begin(), of_limits.end());
+    if (const auto problem = timing::problem_with(config.timing_files, "--frame-log", "--trace")) {
+        problems.push_back(*problem);
+    }
 }
 
 /// Runs `check`, which throws UserError.

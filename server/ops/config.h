@@ -90,6 +90,7 @@ struct Config {
     std::uint64_t max_channel_pixels = 2 * 72ULL * 1280 * 720; ///< views of one frame, over all clients
     std::optional<HostPort> metrics_listen;                    ///< unset: no metrics
     std::optional<std::filesystem::path> metrics_port_file;
+    timing::RecorderFiles timing_files;
     log::Level log_level = log::Level::kInfo;
     log::Format log_format = log::Format::kText;
 };

@@ -157,6 +157,7 @@ void read_listen(const FlagText& text, Config& config, Problems& problems) {
     if (!text.metrics_port_file.empty()) {
         config.metrics_port_file = text.metrics_port_file;
     }
+    config.timing_files = {.frame_log = text.frame_log, .trace = text.trace};
 }
 
 void read_security(const FlagText& text, Config& config, Problems& problems) {

@@ -43,6 +43,8 @@ struct FlagText {
     std::string metrics_listen;
     std::string metrics_port_file;
     RecordingText recording;
+    std::string frame_log;
+    std::string trace;
     std::string log_level = "info";
     std::string log_format = "text";
 };

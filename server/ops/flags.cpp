@@ -151,6 +151,10 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
                    "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
         ->group("Serving");
     app.add_option("--metrics-port-file", text.metrics_port_file, "Gets the port number of /metrics")->group("Serving");
+    app.add_option("--frame-log", text.frame_log, "FILE.csv or .jsonl: a row per frame and client, from pose to display")
+        ->group("Serving");
+    app.add_option("--trace", text.trace, "FILE.json for ui.perfetto.dev: every frame of every channel and client")
+        ->group("Serving");
     app.add_option("--log-format", text.log_format, "text, or json: one object per line")
         ->group("Serving")
         ->capture_default_str();

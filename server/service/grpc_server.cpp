@@ -77,9 +77,9 @@ void check_protection(const HostPort& address, const access::Security& security)
 
 struct GrpcServer::State {
     State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
-          const access::Security& security, std::shared_ptr<metrics::Registry> owned_registry)
-        : registry(std::move(owned_registry)), channels(feeds), limits(session_limits), service_metrics(*registry),
-          catalog(feeds, limits, *registry), light_field(feeds, limits, gate, service_metrics),
+          const access::Security& security, const Observation& observation)
+        : registry(observation.registry), channels(feeds), limits(session_limits), service_metrics(*registry),
+          catalog(feeds, limits, *registry), light_field(feeds, limits, gate, {&service_metrics, observation.recorder}),
           watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }),
           collector(registry->on_collect([this](metrics::Page& page) { collect(page); })) {}
 
@@ -150,11 +150,11 @@ void GrpcServer::State::collect(metrics::Page& page) const {
 
 GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_ptr<feed::Feed>>& channels,
                        const session::Limits& limits, const access::Security& security,
-                       std::shared_ptr<metrics::Registry> registry) {
+                       const Observation& observation) {
     log_transport();
     wire::take_protobuf_log();
     check_protection(address, security);
-    state_ = std::make_unique<State>(channels, limits, security, std::move(registry));
+    state_ = std::make_unique<State>(channels, limits, security, observation);
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     const std::string text = to_text(address);

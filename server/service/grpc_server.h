@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/host_port.h"
+#include "core/timing/recorder.h"
 #include "server/access/access_watch.h"
 #include "server/feed/feed.h"
 #include "server/metrics/registry.h"
@@ -17,6 +18,12 @@ namespace fieldcast::service {
 /// Port 0: any free one.
 inline const HostPort kDefaultListen{.host = "127.0.0.1", .port = 50151};
 
+/// Where the server tells what it does.
+struct Observation {
+    std::shared_ptr<metrics::Registry> registry = std::make_shared<metrics::Registry>();
+    timing::Recorder* recorder = nullptr; ///< of frames and clients; null: none; must outlive the server
+};
+
 /// The gRPC edge: Catalog, LightField, health and reflection. Health says SERVING from the constructor on, so make it
 /// when every channel has rendered; it says NOT_SERVING while the server drains, and while somebody waits in vain for
 /// frames of a channel. Heartbeats and deadlines run on a thread of its own, another one follows changes of
@@ -27,7 +34,7 @@ public:
     /// std::runtime_error if the address cannot be listened on.
     GrpcServer(const HostPort& address, const std::vector<std::shared_ptr<feed::Feed>>& channels,
                const session::Limits& limits, const access::Security& security = {},
-               std::shared_ptr<metrics::Registry> registry = std::make_shared<metrics::Registry>());
+               const Observation& observation = {});
     /// Cuts what is still open.
     ~GrpcServer();
 

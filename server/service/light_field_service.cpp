@@ -45,18 +45,18 @@ using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 } // namespace
 
 LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
-                                     const access::Gate& gate, ServiceMetrics& metrics)
-    : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(metrics), sessions_(limits),
-      refusal_log_(RateLimit(kLogRate)),
-      collector_(metrics.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
+                                     const access::Gate& gate, const Observers& observers)
+    : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(*observers.metrics),
+      recorder_(observers.recorder), sessions_(limits), refusal_log_(RateLimit(kLogRate)),
+      collector_(metrics_.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
     for (const auto& channel : channels_) {
-        metrics.prepare(channel->info().name);
+        metrics_.prepare(channel->info().name);
     }
 }
 
 void LightFieldService::collect(metrics::Page& page) {
     std::map<SessionKey, std::uint64_t> sessions;
-    std::map<std::string, std::array<std::uint64_t, 2>> in_flight; // frames and bytes by channel
+    std::map<std::string, std::array<std::uint64_t, 3>> in_flight; // frames, bytes and adapted sessions by channel
     for (const auto& channel : channels_) {
         in_flight[channel->info().name] = {};
     }
@@ -67,6 +67,7 @@ void LightFieldService::collect(metrics::Page& page) {
         if (!facts.channel.empty()) {
             in_flight[facts.channel][0] += facts.frames_in_flight;
             in_flight[facts.channel][1] += facts.bytes_in_flight;
+            in_flight[facts.channel][2] += facts.is_adapted ? 1 : 0;
         }
     }
     for (const auto& [key, count] : sessions) {
@@ -78,6 +79,8 @@ void LightFieldService::collect(metrics::Page& page) {
                        {{"channel", channel}}, static_cast<double>(amounts[0]));
         page.add_gauge({"fieldcast_bytes_in_flight", "Bytes of frames that were begun and are not acknowledged."},
                        {{"channel", channel}}, static_cast<double>(amounts[1]));
+        page.add_gauge({"fieldcast_adapted_sessions", "Sessions that get less than they asked for."},
+                       {{"channel", channel}}, static_cast<double>(amounts[2]));
     }
 }
 
@@ -104,6 +107,7 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
                                                 .budgets = admission->budgets,
                                                 .steerer = steerer_of(*identity, id),
                                                 .metrics = &metrics_,
+                                                .recorder = recorder_,
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
     sessions_.add(id, stream);

@@ -13,9 +13,15 @@ namespace fieldcast::service {
 /// LightField.Open on raw bytes, so that encoded chunks are shared by all clients instead of being copied.
 class LightFieldService final : public v1::LightField::WithRawCallbackMethod_Open<v1::LightField::Service> {
 public:
-    /// `gate` and `metrics` must outlive it.
+    /// Both must outlive the service.
+    struct Observers {
+        ServiceMetrics* metrics = nullptr;
+        timing::Recorder* recorder = nullptr; ///< null: none
+    };
+
+    /// `gate` must outlive it.
     LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
-                      const access::Gate& gate, ServiceMetrics& metrics);
+                      const access::Gate& gate, const Observers& observers);
 
     grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Open(grpc::CallbackServerContext* context) override;
 
@@ -28,6 +34,7 @@ private:
     const session::Limits limits_;
     const access::Gate& gate_;
     ServiceMetrics& metrics_;
+    timing::Recorder* const recorder_; ///< null: none
     SessionTable sessions_;
     Guarded<RateLimit> refusal_log_;
     metrics::Collector collector_; ///< last: reads the sessions

@@ -87,6 +87,11 @@ void ServiceMetrics::add(const std::string& channel, const session::SessionCount
     add("fieldcast_sent_bytes_total", "Bytes of frames, headers and aborted ones included.", of_channel,
         counts.bytes_sent);
     add("fieldcast_configurations_refused_total", "Configure messages that were refused.", of_channel, counts.refusals);
+    for (const auto& [direction, count] :
+         {std::pair("down", counts.adaptations.down), std::pair("up", counts.adaptations.up)}) {
+        add("fieldcast_adaptations_total", "Configurations that the server changed to fit a connection, by direction.",
+            {{"channel", channel}, {"direction", direction}}, count);
+    }
     for (std::size_t i = 0; i < session::kDropReasonCount; ++i) {
         add("fieldcast_frames_dropped_total", "Frames that a client did not get, by reason.",
             {{"channel", channel}, {"reason", std::string(session::kDropReasonNames.at(i))}},

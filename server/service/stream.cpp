@@ -24,14 +24,20 @@ std::shared_ptr<Stream> Stream::open(grpc::CallbackServerContext& context, Setup
 }
 
 void Stream::begin() {
-    state_.lock()->session.emplace(
-        setup_.channels, setup_.limits,
-        [weak = weak_from_this()](const feed::FramePtr& frame) {
-            if (const auto stream = weak.lock()) {
-                stream->take_frame(frame);
-            }
-        },
-        Clock::now(), setup_.budgets, setup_.steerer);
+    {
+        auto state = state_.lock();
+        state->session.emplace(
+            setup_.channels, setup_.limits,
+            [weak = weak_from_this()](const feed::FramePtr& frame) {
+                if (const auto stream = weak.lock()) {
+                    stream->take_frame(frame);
+                }
+            },
+            Clock::now(), setup_.budgets, setup_.steerer);
+        if (setup_.recorder != nullptr) {
+            state->session->timings().enable();
+        }
+    }
     pump();
 }
 
@@ -139,7 +145,9 @@ void Stream::log_configuration(const session::Session& session) const {
                                      {"rows", set.grid.rows},
                                      {"cols", set.grid.cols},
                                      {"width_px", set.width_px},
-                                     {"height_px", set.height_px}});
+                                     {"height_px", set.height_px},
+                                     {"max_fps", configuration->frames_per_second},
+                                     {"adapted", session.adapted_level()}});
 }
 
 void Stream::take_frame(const feed::FramePtr& frame) {
@@ -185,6 +193,7 @@ SessionFacts Stream::facts() {
     auto state = state_.lock();
     facts.frames_in_flight = state->session->credits().in_flight();
     facts.bytes_in_flight = state->session->credits().bytes_in_flight();
+    facts.is_adapted = state->session->adapted_level() > 0;
     if (const auto& configuration = state->session->configuration()) {
         const ViewGrid& grid = configuration->view_set.grid;
         facts.channel = configuration->feed->info().name;
@@ -200,9 +209,27 @@ session::CloseReason Stream::close_reason(const State& state) {
     return state.failure ? *state.failure : state.session->close_reason().value_or(usual);
 }
 
+void Stream::record_timings() {
+    if (setup_.recorder == nullptr) {
+        return;
+    }
+    for (timing::DeliveredFrame& frame : state_.lock()->session->timings().take_finished()) {
+        frame.client = setup_.id;
+        setup_.recorder->add(std::move(frame));
+    }
+}
+
 void Stream::tick() {
     const auto now = Clock::now();
-    state_.lock()->session->on_tick(now);
+    {
+        auto state = state_.lock();
+        const std::uint32_t epoch = state->session->epoch();
+        state->session->on_tick(now);
+        if (state->session->epoch() != epoch) { // adapted
+            log_configuration(*state->session);
+        }
+    }
+    record_timings();
     if (pin_if_overdue(now)) {
         cut();
     }
@@ -241,6 +268,7 @@ void Stream::OnDone() {
         reason = close_reason(*state);
         state->session->end();
     }
+    record_timings();
     log_closed(counts, reason);
     setup_.metrics->count_closed(reason);
     setup_.on_done(setup_.id);

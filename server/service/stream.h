@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "core/timing/recorder.h"
 #include "server/service/service_metrics.h"
 #include "server/session/session.h"
 
@@ -23,6 +24,7 @@ struct SessionFacts {
     std::string grid;    ///< "4x4"; empty: not configured yet
     std::uint32_t frames_in_flight = 0;
     std::uint64_t bytes_in_flight = 0;
+    bool is_adapted = false; ///< gets less than it asked for
 };
 
 /// One LightField.Open call: moves messages between gRPC and a Session. One write and one read in flight at most.
@@ -35,6 +37,7 @@ public:
         session::PeerBudgets budgets;
         feed::Steerer steerer;                      ///< what it may do with cameras
         ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
+        timing::Recorder* recorder = nullptr;       ///< of frame timings; null: none; must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`
     };
@@ -84,6 +87,7 @@ private:
     void pump();
     Actions decide(session::TimePoint now);
     void receive();
+    void record_timings();
     void take_frame(const feed::FramePtr& frame);
     void end(const grpc::Status& status, std::optional<session::CloseReason> why = std::nullopt);
     static session::CloseReason close_reason(const State& state);

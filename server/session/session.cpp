@@ -24,13 +24,6 @@ nanoseconds decode_time(const v1::FrameAck& ack) {
     return nanoseconds(is_known ? ack.decoded_ns() - ack.last_byte_ns() : 0);
 }
 
-/// Pixels of the views that the server makes for a client.
-std::uint64_t made_pixels(const Configuration& configuration) {
-    const wire::ViewSet& set = configuration.view_set;
-    const bool makes_views = configuration.mode == v1::DELIVERY_MODE_VIEWS;
-    return makes_views ? static_cast<std::uint64_t>(set.grid.view_count()) * set.width_px * set.height_px : 0;
-}
-
 } // namespace
 
 Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
@@ -80,83 +73,20 @@ bool Session::is_too_much(const v1::ClientMessage& message, TimePoint now) {
     return false;
 }
 
-void Session::handle(const v1::Configure& wanted, TimePoint now) {
-    auto chosen = negotiate(wanted, channels_, limits_);
-    std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
-    if (refusal) {
-        ++counts_.refusals;
-        *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
-        return;
-    }
-    drop_old_configuration();
-    configuration_ = std::move(*chosen);
-    credits_.configure(static_cast<double>(configuration_->frames_per_second), configuration_->max_bytes_in_flight);
-    next_frame_due_ = {};
-    set_key_frame(0);
-    ++epoch_;
-    *answers_.emplace_back().mutable_configured() =
-        to_message(*configuration_, wanted.request_id(), epoch_, credits_.limit());
-    steering_.move_to(configuration_->feed->steering(), now);
-}
-
-std::optional<Refusal> Session::admit(const Configuration& wanted) {
-    const auto exhausted = [](std::string message) {
-        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "grid", .message = std::move(message)};
-    };
-    if (departure_ || cut_at_) {
-        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "", .message = "the server is going away"};
-    }
-    const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
-    const std::uint64_t new_pixels = made_pixels(wanted);
-    if (!pixels_.resize(std::max(old_pixels, new_pixels))) { // both, until it is known which of them it will be
-        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions " +
-                         "of this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
-                         " that one peer may have");
-    }
-    const auto problem = subscribe(wanted);
-    pixels_.resize(problem ? old_pixels : new_pixels);
-    return problem ? std::optional(exhausted(*problem)) : std::nullopt;
-}
-
-std::optional<std::string> Session::subscribe(const Configuration& wanted) {
-    if (subscription_.feed() == wanted.feed) {
-        return subscription_.change(wanted.wish);
-    }
-    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
-    if (!subscription) {
-        return std::move(subscription.error());
-    }
-    subscription_ = std::move(*subscription);
-    return std::nullopt;
-}
-
 void Session::end() {
     steering_.leave();
+    timings_.end();
     subscription_.end();
     pixels_.resize(0);
     bytes_.resize(0);
-}
-
-void Session::drop_old_configuration() {
-    if (sending_) {
-        v1::FrameAborted& aborted = *answers_.emplace_back().mutable_frame_aborted();
-        aborted.set_frame_id(sending_->frame.frame_id);
-        aborted.set_epoch(epoch_);
-        aborted.set_reason(v1::ABORT_REASON_RECONFIGURED);
-        credits_.give_back({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
-        bytes_.resize(credits_.bytes_in_flight());
-        counts_.drops.add(DropReason::kReconfigured);
-        sending_.reset();
-    }
-    if (mailbox_.take()) {
-        counts_.drops.add(DropReason::kReconfigured);
-    }
 }
 
 void Session::handle(const v1::FrameAck& ack, TimePoint now) {
     const bool is_first =
         credits_.acknowledged({.epoch = ack.epoch(), .frame_id = ack.frame_id()}, decode_time(ack), now);
     bytes_.resize(credits_.bytes_in_flight());
+    timings_.acknowledged(ack);
+    adapter_.acknowledged(ack, decode_time(ack), now);
     if (is_first && ack.outcome() == v1::FRAME_OUTCOME_FAILED) {
         ++counts_.frames_failed;
         if (ack.epoch() == epoch_) {
@@ -175,6 +105,7 @@ void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
         return;
     }
     if (mailbox_.put(frame)) {
+        adapter_.missed();
         counts_.drops.add(sending_        ? DropReason::kSending
                           : lacks_budget_ ? DropReason::kNoBudget
                                           : DropReason::kNoCredit);
@@ -204,6 +135,7 @@ void Session::go_away(const std::string& reason, TimePoint at, CloseReason why) 
 }
 
 void Session::on_tick(TimePoint now) {
+    adapt(now);
     if (!configuration_ && now >= configure_by_) {
         go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now,
                 CloseReason::kNotConfigured);
@@ -298,6 +230,9 @@ void Session::start_frame(TimePoint now) {
     }
     const feed::FramePtr encoded = *mailbox_.take();
     credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
+    adapter_.begun({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
+    timings_.begun({.epoch = epoch_, .frame_id = frame.frame_id}, configuration_->feed->info().name, *encoded,
+                   frame.payload_bytes);
     auto plane_bytes = plane_bytes_of(*encoded, frame);
     sending_ = Sending{
         .frame = std::move(frame), .next_chunk = 0, .times = encoded->times, .plane_bytes = std::move(plane_bytes)};
@@ -363,6 +298,7 @@ wire::WireChunk Session::next_chunk(TimePoint now) {
         counts_.plane_bytes[choice] += bytes;
     }
     credits_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, now);
+    timings_.sent({.epoch = epoch_, .frame_id = sending.frame.frame_id}, sending.times);
     if (sending.frame.key_frame_id == sending.frame.frame_id) {
         set_key_frame(sending.frame.frame_id); // what follows on the stream arrives after it
     }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "core/base/rate_limit.h"
+#include "server/session/adapter.h"
 #include "server/session/budget.h"
 #include "server/session/close_reason.h"
 #include "server/session/credits.h"
+#include "server/session/frame_timings.h"
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
 #include "server/session/session_counts.h"
@@ -38,11 +40,17 @@ public:
     /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
     void go_away(const std::string& reason, TimePoint at, CloseReason why = CloseReason::kDrained);
 
-    /// Watches deadlines; call it several times per heartbeat interval.
+    /// Watches deadlines, and whether the configuration fits the connection; call it several times per heartbeat interval.
     void on_tick(TimePoint now);
 
     /// The client was told to go and has not gone in time: cut the stream.
     bool is_overdue(TimePoint now) const { return cut_at_ && now >= *cut_at_; }
+
+    /// Steps that the server has taken away from what was asked for, because of the connection.
+    std::size_t adapted_level() const { return adapter_.level(); }
+
+    /// When its frames were where; nothing unless enabled.
+    FrameTimings& timings() { return timings_; }
 
     /// Gives up its place in the channel: no further frames are rendered for it.
     void end();
@@ -71,6 +79,8 @@ private:
 
     void handle(const v1::Configure& wanted, TimePoint now);
     void handle(const v1::FrameAck& ack, TimePoint now);
+    v1::Configured& begin_epoch(Configuration chosen); ///< the answer, which is queued
+    void adapt(TimePoint now);
     std::optional<Refusal> admit(const Configuration& wanted);
     std::optional<std::string> subscribe(const Configuration& wanted);
     bool is_too_much(const v1::ClientMessage& message, TimePoint now);
@@ -93,6 +103,8 @@ private:
     feed::FrameCallback on_frame_;
     std::optional<Configuration> configuration_;
     std::uint32_t epoch_ = 0;
+    std::uint32_t request_id_ = 0; ///< of the Configure that was granted last
+    Adapter adapter_;
     Credits credits_;
     Share bytes_;  ///< in flight
     Share pixels_; ///< of the views that the server makes for it
@@ -111,6 +123,7 @@ private:
     TimePoint next_frame_due_{}; ///< by the client's rate cap
     SessionCounts counts_;
     SteeringDesk steering_;
+    FrameTimings timings_;
     feed::Subscription subscription_; ///< last: ends before what its callback leads to
 };
 

@@ -9,6 +9,8 @@ SessionCounts difference(const SessionCounts& later, const SessionCounts& earlie
     counts.bytes_sent -= earlier.bytes_sent;
     counts.frames_failed -= earlier.frames_failed;
     counts.refusals -= earlier.refusals;
+    counts.adaptations.down -= earlier.adaptations.down;
+    counts.adaptations.up -= earlier.adaptations.up;
     counts.drops.subtract(earlier.drops);
     for (const auto& [choice, bytes] : earlier.plane_bytes) {
         counts.plane_bytes[choice] -= bytes;

@@ -140,6 +140,7 @@ TEST(LoadRun, ARefusedClientDoesNotComeBack) {
     FakeServer server([](FakeCall& call, int) {
         call.read_until(v1::ClientMessage::kConfigure);
         v1::ServerMessage message;
+        message.mutable_refused()->set_request_id(1);
         message.mutable_refused()->set_reason(v1::REFUSAL_REASON_INVALID);
         message.mutable_refused()->set_message("no");
         call.send(message);

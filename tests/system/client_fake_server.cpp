@@ -9,8 +9,6 @@
 namespace fieldcast::test {
 namespace {
 
-constexpr std::uint32_t kEpoch = 1;
-
 v1::ServerMessage parsed(const wire::WireChunk& chunk) {
     v1::ServerMessage message;
     if (!message.ParseFromString(wire::joined(chunk))) {
@@ -90,7 +88,7 @@ v1::ServerMessage configured_message(const v1::Configure& configure) {
     v1::ServerMessage message;
     v1::Configured& configured = *message.mutable_configured();
     configured.set_request_id(configure.request_id());
-    configured.set_epoch(kEpoch);
+    configured.set_epoch(configure.request_id());
     configured.set_channel("fake");
     configured.set_scene_hash(std::string(32, '\xAB'));
     configured.set_mode(configure.modes(0));
@@ -103,7 +101,7 @@ v1::ServerMessage configured_message(const v1::Configure& configure) {
     return message;
 }
 
-std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uint64_t frame_id) {
+std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uint64_t frame_id, std::uint32_t epoch) {
     WorkerPool pool(1);
     wire::ViewFormat format;
     format.geometry = set.grid.geometry;
@@ -111,7 +109,7 @@ std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uin
     format.width_px = set.width_px;
     format.height_px = set.height_px;
     const wire::EncodedViews encoded = wire::encode_views(grey_views(set, frame_id), format, {}, pool);
-    const wire::WireFrame frame = wire::view_chunks(encoded, set.grid, {.epoch = kEpoch});
+    const wire::WireFrame frame = wire::view_chunks(encoded, set.grid, {.epoch = epoch});
     std::vector<v1::ServerMessage> messages;
     for (const wire::WireChunk& chunk : frame.chunks) {
         messages.push_back(parsed(chunk));

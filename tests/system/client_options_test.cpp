@@ -121,5 +121,60 @@ TEST(Options, HelpHasExamplesAndExitsWithZero) {
     EXPECT_THAT(invocation.text, HasSubstr("Examples:"));
 }
 
+TEST(Options, ChangesBuildOnEachOther) {
+    const Invocation invocation = read({"--grid", "3x3", "--change", "3s:grid=5x5,quality=40,codec=jpeg+zstd", "--change",
+                                        "20f:mode=scene,size=320x180", "--cache", "c"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    const client::play::PlayOptions& play = invocation.options->play;
+    EXPECT_EQ(play.wish.rows, 3U);
+    ASSERT_EQ(play.changes.size(), 2U);
+    EXPECT_EQ(play.changes[0].moment.after, std::chrono::milliseconds(3000));
+    EXPECT_EQ(play.changes[0].wish.rows, 5U);
+    EXPECT_EQ(play.changes[0].wish.quality, 40U);
+    EXPECT_THAT(play.changes[0].wish.codecs,
+                testing::ElementsAre(codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered));
+    EXPECT_EQ(play.changes[1].moment.frames, 20U);
+    EXPECT_EQ(play.changes[1].wish.mode, client::net::Mode::kScene);
+    EXPECT_EQ(play.changes[1].wish.rows, 5U) << "as the change before left it";
+    EXPECT_EQ(play.changes[1].wish.height_px, 180U);
+    EXPECT_EQ(play.cache_folder, "c") << "the change needs the scene";
+}
+
+TEST(Options, ChangesThatCannotBeReadAreNamed) {
+    for (const auto& [text, words] : {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"),
+                                      std::pair("3s:grid=2", "grid 2"), std::pair("3s:colour=red", "keys are grid"),
+                                      std::pair("3s:quality=101", "quality=101"), std::pair("-1s:grid=2x2", "says when")}) {
+        const Invocation invocation = read({"--change", text});
+        EXPECT_FALSE(invocation.options) << text;
+        EXPECT_EQ(invocation.exit_code, 2);
+        EXPECT_THAT(invocation.text, HasSubstr(words));
+    }
+}
+
+TEST(Options, FilesOfTimingsSayTheirFormByTheirName) {
+    EXPECT_TRUE(read({"--frame-log", "a.csv", "--trace", "b.json"}).options);
+    EXPECT_THAT(read({"--frame-log", "a.txt"}).text, HasSubstr(".jsonl"));
+}
+
+TEST(Options, AdaptationIsOffUnlessAskedFor) {
+    EXPECT_FALSE(read({}).options->play.wish.adaptation);
+    const Invocation usual = read({"--adapt", "--frames", "3"});
+    ASSERT_TRUE(usual.options) << usual.text;
+    ASSERT_TRUE(usual.options->play.wish.adaptation);
+    EXPECT_TRUE(usual.options->play.wish.adaptation->allows_jpeg);
+    EXPECT_EQ(usual.options->play.wish.adaptation->min_rows, 3U);
+    const Invocation own = read({"--adapt", "jpeg=off,quality=0,fps=5,height=90,grid=2x1,delay=250"});
+    ASSERT_TRUE(own.options) << own.text;
+    const client::net::AdaptationWish& wish = *own.options->play.wish.adaptation;
+    EXPECT_FALSE(wish.allows_jpeg);
+    EXPECT_EQ(wish.min_quality, 0U);
+    EXPECT_EQ(wish.min_frames_per_second, 5.0F);
+    EXPECT_EQ(wish.min_view_height_px, 90U);
+    EXPECT_EQ(wish.min_rows, 2U);
+    EXPECT_EQ(wish.min_cols, 1U);
+    EXPECT_EQ(wish.max_queue_delay_ms, 250U);
+    EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("keys are jpeg"));
+}
+
 } // namespace
 } // namespace fieldcast::test

@@ -145,6 +145,50 @@ TEST_F(PlayTest, SceneWithoutADeviceSaysWhatWorks) {
     EXPECT_EQ(server.call_count(), 0);
 }
 
+TEST_F(PlayTest, ChangesOnTheRunningStream) {
+    const FakeServer server([](FakeCall& call, int) {
+        send_frames(call, 1, 2);
+        const wire::ViewSet changed = call.grant();
+        for (std::uint64_t id = 3; id < 20; ++id) {
+            call.send(views_messages(changed, id, 2));
+            call.read_until(v1::ClientMessage::kFrameAck);
+        }
+        call.read_rest();
+    });
+    play::PlayOptions wanted = options(server);
+    wanted.frames = 3;
+    wanted.changes.push_back({.moment = {.frames = 2}, .wish = wanted.wish});
+    wanted.changes[0].wish.cols = 3;
+    const play::PlayResult result = play::play(
+        wanted, [](const play::Progress&) {}, stop_.get_token());
+    EXPECT_FALSE(result.failure);
+    EXPECT_EQ(result.summary.counts.sessions, 1U);
+    EXPECT_EQ(result.summary.counts.changes, 1U);
+    ASSERT_GE(result.summary.epochs.size(), 1U);
+    const play::EpochSummary& last = result.summary.epochs.back();
+    EXPECT_EQ(last.epoch, 2U);
+    EXPECT_EQ(last.grid, "1x3");
+    EXPECT_EQ(result.summary.grid, "1x3");
+    EXPECT_GE(last.first_frame, 3U);
+    EXPECT_TRUE(fs::exists(folder_ / "view_r0_c2.png")) << "the third view came with the change";
+}
+
+TEST(ChangeSchedule, GivesEachChangeOnceAndInOrder) {
+    using std::chrono_literals::operator""s;
+    const play::ChangeSchedule::TimePoint start{};
+    std::vector<play::Change> changes{{.moment = {.after = 3000ms}, .wish = {}}, {.moment = {.frames = 2}, .wish = {}}};
+    changes[1].wish.rows = 9;
+    play::ChangeSchedule schedule(changes);
+    EXPECT_FALSE(schedule.due(start + 10s)) << "not before the first agreement";
+    schedule.agreed(start);
+    schedule.frame_arrived();
+    schedule.frame_arrived();
+    EXPECT_FALSE(schedule.due(start + 2999ms)) << "the second waits for the first";
+    EXPECT_TRUE(schedule.due(start + 3s));
+    EXPECT_EQ(schedule.due(start + 3s)->rows, 9U);
+    EXPECT_FALSE(schedule.due(start + 99s));
+}
+
 TEST(Receiver, ComesBackWhenTheServerGoesAway) {
     const FakeServer server([](FakeCall& call, int number) {
         send_frames(call, number == 0 ? 1 : 100, 1);
@@ -179,6 +223,7 @@ TEST(Receiver, DoesNotRepeatARefusedWish) {
     const FakeServer server([](FakeCall& call, int) {
         call.read_until(v1::ClientMessage::kConfigure);
         v1::ServerMessage message;
+        message.mutable_refused()->set_request_id(1);
         message.mutable_refused()->set_reason(v1::REFUSAL_REASON_NOT_FOUND);
         message.mutable_refused()->set_message("no such channel");
         call.send(message);

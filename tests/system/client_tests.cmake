@@ -16,6 +16,7 @@ fieldcast_test(client_play_test LABELS quick
     DEPENDS client_fake_server fieldcast_client_play)
 fieldcast_test(client_options_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/options.cpp
+            ${PROJECT_SOURCE_DIR}/client/setting_text.cpp
     DEPENDS fieldcast_client_play CLI11::CLI11)
 
 fieldcast_test(client_access_test LABELS quick
@@ -35,3 +36,13 @@ fieldcast_test(roundtrip_test LABELS system TIMEOUT 600
 add_dependencies(roundtrip_test fieldcast-server fieldcast-client)
 target_compile_definitions(roundtrip_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+# Bad networks: the imitated one, and the real one where the kernel has netem and we are root; else it says why and skips.
+add_test(NAME relay_test COMMAND Python3::Interpreter -B bench/network/relay_test.py
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(relay_test PROPERTIES LABELS quick TIMEOUT 120)
+add_test(NAME netem_test COMMAND Python3::Interpreter -B bench/network/networks.py --programs ${CMAKE_BINARY_DIR}
+    --method netem --seconds 20 --size 160x90 --client-flags "--grid 2x2 --patience 60"
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(netem_test PROPERTIES LABELS system TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL ON)

@@ -13,7 +13,7 @@ constexpr auto kPatience = 15s; // of a test on a busy machine; deadlines of the
 } // namespace
 
 ServedChannel::ServedChannel(const session::Limits& limits)
-    : server_({.host = "127.0.0.1", .port = 0}, {channel_.feed()}, limits, {}, registry_) {}
+    : server_({.host = "127.0.0.1", .port = 0}, {channel_.feed()}, limits, {}, {.registry = registry_}) {}
 
 double ServedChannel::metric(const std::string& series) {
     std::string text("\n");

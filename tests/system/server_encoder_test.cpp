@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/channel/channel_metrics.h"
 #include "server/channel/frame_encoder.h"
 
 #include <gtest/gtest.h>
@@ -104,6 +105,37 @@ TEST_F(Encoder, WhatTheKeyFrameLacksRefersToNothing) {
     for (const auto& [position, view] : encoded->views[0].views) {
         EXPECT_FALSE(repeats(view.image));
         EXPECT_TRUE(view.image.stands_alone());
+    }
+}
+
+TEST_F(Encoder, NestedGridsAreRenderedAndEncodedOnce) {
+    feed::Demand demand;
+    for (const std::uint32_t side : {3U, 6U}) {
+        const ViewGrid grid{.rows = side, .cols = side, .geometry = {}, .anchor = Anchor::kLattice};
+        add(demand, feed::ViewsWish{.format = format_, .grid = grid});
+    }
+    RenderedFrame frame;
+    frame.header.frame_id = 1;
+    frame.asked_views = demand.asked_views;
+    frame.views.push_back({.formats = {format_}, .views = {.header = frame.header, .views = {}}});
+    for (const LatticePosition position : demand.views.at(0).positions) {
+        frame.views[0].views.views.push_back(
+            {.position = position, .image = plane(PlaneSemantic::kColour, PlaneFormat::kRgb8), .discards = {}});
+    }
+    metrics::Registry registry;
+    ChannelMetrics metrics(registry, "hall");
+    metrics.count_rendered(frame, 0);
+    const auto encoded = encode(0ms, std::move(frame));
+    metrics.count_encoded(*encoded, 1ms);
+    const std::string page = registry.page().text();
+    for (const auto& [step, count] : {std::pair("asked", 45), std::pair("rendered", 36), std::pair("encoded", 36)}) {
+        const std::string line = "fieldcast_views_total{channel=\"hall\",step=\"" + std::string(step) + "\"} " +
+                                 std::to_string(count) + "\n";
+        EXPECT_NE(page.find(line), std::string::npos) << line << page;
+    }
+    for (const std::uint32_t side : {3U, 6U}) {
+        const ViewGrid grid{.rows = side, .cols = side, .geometry = {}, .anchor = Anchor::kLattice};
+        EXPECT_TRUE(feed::covers(*encoded, feed::ViewsWish{.format = format_, .grid = grid})) << side;
     }
 }
 

@@ -33,6 +33,16 @@ TEST(FeedTest, DemandIsTheUnionOfWishes) {
     EXPECT_TRUE(feed->demand().planes.empty());
 }
 
+TEST(FeedTest, NestedGridsShareTheirViews) {
+    const auto feed = std::make_shared<Feed>(test::synthetic_info());
+    const auto small = Feed::subscribe(feed, views_wish(*feed, 3, 3), [](const FramePtr&) {});
+    const auto large = Feed::subscribe(feed, views_wish(*feed, 6, 6), [](const FramePtr&) {});
+    const Demand demand = feed->demand();
+    EXPECT_EQ(demand.asked_views, 45U);
+    ASSERT_EQ(demand.views.size(), 1U);
+    EXPECT_EQ(demand.views[0].positions.size(), 36U) << "the nine are among the thirty-six";
+}
+
 TEST(FeedTest, RefusedChangeKeepsTheOldWish) {
     ChannelInfo info = test::synthetic_info();
     info.max_view_pixels = 9ULL * 64 * 36;

@@ -5,11 +5,13 @@ target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/s
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
 
 fieldcast_test(server_session_test LABELS quick tsan
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_adaptation_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_timings_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_recording_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
@@ -64,6 +66,10 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
         DEPENDS certificate_authority server_synthetic fieldcast_server_service)
 endif()
 
+# Not a test: what bench/network/networks.py --synthetic measures.
+add_executable(synthetic_server ${CMAKE_CURRENT_LIST_DIR}/synthetic_server.cpp)
+target_link_libraries(synthetic_server PRIVATE server_synthetic fieldcast_server_service fieldcast_warnings)
+
 # Renders; the tests that need a device skip without one.
 fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
@@ -85,6 +91,13 @@ fieldcast_test(operation_process_test LABELS gpu TIMEOUT 600
     DEPENDS certificate_authority running_server nlohmann_json::nlohmann_json)
 add_dependencies(operation_process_test fieldcast-server fieldcast-client)
 target_compile_definitions(operation_process_test PRIVATE
+    FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+
+fieldcast_test(change_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/change_process_test.cpp
+    DEPENDS running_server nlohmann_json::nlohmann_json)
+add_dependencies(change_process_test fieldcast-server fieldcast-client)
+target_compile_definitions(change_process_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
 
 # Through the proxy of deploy/; skips where it cannot be installed. See tests/deploy.

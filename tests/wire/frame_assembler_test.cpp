@@ -41,7 +41,7 @@ protected:
         EXPECT_TRUE(next->has_value());
     }
 
-    const ServerTimes times_{1, 2, 3, 4, 5, -6};
+    const ServerTimes times_{1, 2, 3, 4, 5, 6, -7};
     WorkerPool pool_{3};
     FrameAssembler assembler_;
     std::uint64_t next_id_ = 1000;

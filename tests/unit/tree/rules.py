@@ -11,6 +11,7 @@ import re
 CORE = {
     "core/base": set(),
     "core/lightfield": {"core/base"},
+    "core/timing": {"core/base", "core/lightfield"},
     "core/image": {"core/base", "core/lightfield"},
     "core/report": {"core/base", "core/lightfield", "core/image"},
     "core/codec": {"core/base", "core/lightfield"},

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/net/configure.h"
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace fieldcast::client::play {
+
+/// When something else is asked for on the running stream: so long after the first agreement of the run, or when so
+/// many frames have come. One of the two is set.
+struct ChangeMoment {
+    std::optional<std::chrono::milliseconds> after{};
+    std::optional<std::uint64_t> frames{};
+};
+
+struct Change {
+    ChangeMoment moment;
+    net::Wish wish; ///< complete, not only what differs
+};
+
+/// Changes in their order, and where the run stands in them. Goes on over reconnects.
+class ChangeSchedule {
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    explicit ChangeSchedule(std::vector<Change> changes) : changes_(std::move(changes)) {}
+
+    /// The wish to ask for now, if a change is due; each is returned once.
+    std::optional<net::Wish> due(TimePoint now) {
+        if (next_ >= changes_.size() || !begin_) {
+            return std::nullopt;
+        }
+        const ChangeMoment& moment = changes_[next_].moment;
+        const bool is_due = (moment.after && now - *begin_ >= *moment.after) || (moment.frames && frames_ >= *moment.frames);
+        return is_due ? std::optional(changes_[next_++].wish) : std::nullopt;
+    }
+
+    void agreed(TimePoint now) { begin_ = begin_.value_or(now); }
+    void frame_arrived() { ++frames_; }
+
+private:
+    std::vector<Change> changes_;
+    std::size_t next_ = 0;
+    std::optional<TimePoint> begin_; ///< the first agreement
+    std::uint64_t frames_ = 0;
+};
+
+} // namespace fieldcast::client::play

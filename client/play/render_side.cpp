@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/play/render_side.h"
+
+#include "client/play/playback.h"
+#include "client/play/scene_source.h"
+
+#include "core/base/log.h"
+
+namespace fieldcast::client::play {
+
+std::unique_ptr<RenderSide> RenderSide::make(const PlayOptions& options, const std::stop_token& stop) {
+    const bool plays_scenes = needs_scene(options);
+    if (!plays_scenes && !asks_for(options, net::Mode::kWarp)) {
+        return nullptr;
+    }
+    gpu::DeviceOptions device_options;
+    device_options.name_contains = options.device;
+    std::unique_ptr<RenderSide> side;
+    try {
+        side.reset(new RenderSide(device_options));
+    } catch (const gpu::NoDeviceError& error) {
+        throw NoDeviceForViews(std::string(plays_scenes ? "mode scene" : "mode warp") +
+                               " makes its views on a Vulkan device of this machine: " + error.what() +
+                               ". With --mode views the server makes them.");
+    }
+    log::info("device chosen", {{"name", side->device_.info().name}, {"driver", side->device_.info().driver}});
+    if (asks_for(options, net::Mode::kWarp)) {
+        side->warp_.emplace(side->device_);
+    }
+    if (plays_scenes) {
+        scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
+        side->hash_ = scene.hash;
+        side->scene_.emplace(side->device_, std::move(scene), options.traversal);
+    }
+    return side;
+}
+
+Decoded<Views> RenderSide::play(net::Mode mode, const SourceFrame& frame, const wire::ViewSet& set) {
+    FC_ASSERT(mode == net::Mode::kScene ? scene_.has_value() : warp_.has_value(), "only asked modes are agreed on");
+    return mode == net::Mode::kScene ? scene_->play(frame, set) : warp_->play(frame, set);
+}
+
+} // namespace fieldcast::client::play

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a session comes by its configuration, and changes it.
+#include "server/session/session.h"
+
+#include <algorithm>
+
+namespace fieldcast::session {
+
+namespace {
+
+/// Pixels of the views that the server makes for a client.
+std::uint64_t made_pixels(const Configuration& configuration) {
+    const wire::ViewSet& set = configuration.view_set;
+    const bool makes_views = configuration.mode == v1::DELIVERY_MODE_VIEWS;
+    return makes_views ? static_cast<std::uint64_t>(set.grid.view_count()) * set.width_px * set.height_px : 0;
+}
+
+} // namespace
+
+void Session::handle(const v1::Configure& wanted, TimePoint now) {
+    auto chosen = negotiate(wanted, channels_, limits_);
+    std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
+    if (refusal) {
+        ++counts_.refusals;
+        *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
+        return;
+    }
+    request_id_ = wanted.request_id();
+    adapter_.configured(wanted, *chosen);
+    begin_epoch(std::move(*chosen));
+    steering_.move_to(configuration_->feed->steering(), now);
+}
+
+v1::Configured& Session::begin_epoch(Configuration chosen) {
+    drop_old_configuration();
+    configuration_ = std::move(chosen);
+    credits_.configure(static_cast<double>(configuration_->frames_per_second), configuration_->max_bytes_in_flight);
+    next_frame_due_ = {};
+    set_key_frame(0);
+    ++epoch_;
+    v1::Configured& configured = *answers_.emplace_back().mutable_configured();
+    configured = to_message(*configuration_, request_id_, epoch_, credits_.limit());
+    return configured;
+}
+
+std::optional<Refusal> Session::admit(const Configuration& wanted) {
+    const auto exhausted = [](std::string message) {
+        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "grid", .message = std::move(message)};
+    };
+    if (departure_ || cut_at_) {
+        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "", .message = "the server is going away"};
+    }
+    const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
+    const std::uint64_t new_pixels = made_pixels(wanted);
+    if (!pixels_.resize(std::max(old_pixels, new_pixels))) { // both, until it is known which of them it will be
+        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions " +
+                         "of this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
+                         " that one peer may have");
+    }
+    const auto problem = subscribe(wanted);
+    pixels_.resize(problem ? old_pixels : new_pixels);
+    return problem ? std::optional(exhausted(*problem)) : std::nullopt;
+}
+
+std::optional<std::string> Session::subscribe(const Configuration& wanted) {
+    if (subscription_.feed() == wanted.feed) {
+        return subscription_.change(wanted.wish);
+    }
+    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
+    if (!subscription) {
+        return std::move(subscription.error());
+    }
+    subscription_ = std::move(*subscription);
+    return std::nullopt;
+}
+
+void Session::drop_old_configuration() {
+    if (sending_) {
+        v1::FrameAborted& aborted = *answers_.emplace_back().mutable_frame_aborted();
+        aborted.set_frame_id(sending_->frame.frame_id);
+        aborted.set_epoch(epoch_);
+        aborted.set_reason(v1::ABORT_REASON_RECONFIGURED);
+        credits_.give_back({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        adapter_.aborted({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        timings_.aborted({.epoch = epoch_, .frame_id = sending_->frame.frame_id});
+        bytes_.resize(credits_.bytes_in_flight());
+        counts_.drops.add(DropReason::kReconfigured);
+        sending_.reset();
+    }
+    if (mailbox_.take()) {
+        counts_.drops.add(DropReason::kReconfigured);
+    }
+}
+
+void Session::adapt(TimePoint now) {
+    const bool is_leaving = departure_ || cut_at_;
+    const auto change = is_leaving ? std::nullopt : adapter_.due(now);
+    if (!change) {
+        return;
+    }
+    auto chosen = negotiate(adapter_.rung(change->level).wanted, channels_, limits_);
+    if (!chosen || admit(*chosen)) { // such as no room for views of another size
+        adapter_.refused();
+        return;
+    }
+    *begin_epoch(std::move(*chosen)).mutable_adapted() = adapter_.to_message(*change);
+    ++(change->reason == LevelReason::kRecovered ? counts_.adaptations.up : counts_.adaptations.down);
+}
+
+} // namespace fieldcast::session
