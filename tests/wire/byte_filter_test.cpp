@@ -43,9 +43,7 @@ TEST(ByteFilter, EveryCombinationThatFitsIsReversible) {
     for (const PlaneFormat format : kAllFormats) {
         const auto filters = filters_of(format);
         // Five predictors, folded or not, times the layouts: bytes, and words or fields where the pixel has such.
-        const std::size_t layouts = format == PlaneFormat::kR11G11B10F                            ? 4
-                                    : format == PlaneFormat::kRg8 || format == PlaneFormat::kRgb8 ? 2
-                                                                                                  : 3;
+        const std::size_t layouts = format == PlaneFormat::kR11G11B10F ? 4 : bytes_per_pixel(format) == 4 ? 3 : 2;
         EXPECT_EQ(filters.size(), 10 * layouts) << name_of(format);
         for (const ByteFilter filter : filters) {
             for (const auto& [width, height] : {std::pair(1U, 1U), std::pair(1U, 5U), std::pair(37U, 9U)}) {
