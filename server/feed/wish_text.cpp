@@ -21,6 +21,12 @@ const char* word_of(PlaneSemantic semantic) {
         return "material";
     case PlaneSemantic::kColour:
         return "colour";
+    case PlaneSemantic::kInverseDepth:
+        return "inverse depth";
+    case PlaneSemantic::kResidualColour:
+        return "residual colour";
+    case PlaneSemantic::kResidualInverseDepth:
+        return "residual inverse depth";
     }
     return "unknown";
 }
@@ -57,6 +63,8 @@ std::string to_text(const codec::Encoding& encoding) {
         return "zstd";
     case codec::CodecId::kJpeg:
         return "jpeg " + std::to_string(encoding.quality);
+    case codec::CodecId::kH264:
+        return "h264 " + std::to_string(encoding.quality);
     }
     return "unknown";
 }

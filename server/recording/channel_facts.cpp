@@ -141,7 +141,7 @@ feed::ChannelInfo plain_facts(const v1::RecordedChannel& message) {
     info.fovy_rad = message.fovy_rad();
     info.frames_per_second = message.frames_per_second();
     info.camera = message.camera();
-    info.is_camera_animated = message.is_camera_animated();
+    info.control = message.is_camera_animated() ? feed::CameraControl::kScripted : feed::CameraControl::kFixed;
     info.max_view_pixels = std::numeric_limits<std::uint64_t>::max(); // nothing is rendered
     return info;
 }
@@ -160,7 +160,7 @@ Bytes to_bytes(const feed::ChannelInfo& info) {
     message.set_frames_per_second(info.frames_per_second);
     wire::to_proto(info.guard_band, *message.mutable_guard_band());
     message.set_camera(info.camera);
-    message.set_is_camera_animated(info.is_camera_animated);
+    message.set_is_camera_animated(info.control != feed::CameraControl::kFixed);
     for (const feed::Wish& wish : info.recorded) {
         std::visit([&](const auto& kind) { form_to_proto(kind, *message.add_forms()); }, wish);
     }
