@@ -16,6 +16,7 @@ using testing::HasSubstr;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = 120s; // a software device on a busy machine
+constexpr auto kSharingPatience = 400s; // there a dozen frames of two channels took seconds each
 constexpr const char* kScene = "scenes/atelier/atelier.gltf";
 
 class SteeredChannel : public testing::Test {
@@ -77,7 +78,7 @@ public:
 
 private:
     void watch(int port, const v1::Configure& wanted, const std::stop_token& stop) {
-        OpenCall call(connect(port), "", kPatience);
+        OpenCall call(connect(port), "", kSharingPatience);
         call.configure(wanted);
         for (auto trailer = call.read_frame(); trailer && !stop.stop_requested(); trailer = call.read_frame()) {
             call.acknowledge(*trailer);
@@ -109,17 +110,17 @@ TEST(SharedDevice, AnExpensiveChannelGetsNoMoreOfItThanACheapOne) {
     };
     const Watcher expensive(server.port(), "atelier", 6);
     const Watcher cheap(server.port(), "cheap", 1);
-    const auto deadline = Clock::now() + kPatience;
+    const auto deadline = Clock::now() + kSharingPatience;
     const auto wait_for = [&](int frames) {
         while (expensive.frames() < frames && Clock::now() < deadline) {
             std::this_thread::sleep_for(10ms); // the count has no event to wait for
         }
-        ASSERT_GE(expensive.frames(), frames) << server.log();
+        EXPECT_GE(expensive.frames(), frames) << server.log();
     };
     wait_for(3); // both run
     const Usage expensive_before = usage("atelier");
     const Usage cheap_before = usage("cheap");
-    wait_for(23);
+    wait_for(11);
     const double a = usage("atelier").seconds - expensive_before.seconds;
     const double b = usage("cheap").seconds - cheap_before.seconds;
     const double cost_a = a / (usage("atelier").frames - expensive_before.frames);
@@ -130,6 +131,7 @@ TEST(SharedDevice, AnExpensiveChannelGetsNoMoreOfItThanACheapOne) {
                 cost_b * 1e3, jain);
     ASSERT_GT(cost_a, 1.5 * cost_b) << "otherwise nothing is tested";
     // Turns one after the other would give (r + 1)^2 / (2 (r^2 + 1)) for costs in the ratio r: 0.96 for 1.5, 0.74 for 4.
+    // Here two frames of eight may be on the wrong side of the two moments: 14^2 / (2 (8^2 + 6^2)) = 0.98.
     EXPECT_GT(jain, 0.97);
 }
 
