@@ -51,6 +51,13 @@ std::string bytes_of(const feed::EncodedFrame& frame, const feed::Wish& wish, bo
     return bytes + wire::joined(wire::trailer_chunk(chunks, frame.times));
 }
 
+/// The synthetic channel with a bundle that is quick to check.
+feed::ChannelInfo small_info() {
+    feed::ChannelInfo info = test::synthetic_info("hall");
+    info.bundle = std::make_shared<const Bytes>(Bytes(1000, std::byte{7}));
+    return info;
+}
+
 class RecordingTest : public testing::Test {
 protected:
     /// Six frames: 5 and 8 are key frames, others refer to them, the first refers to one that is not recorded.
@@ -84,7 +91,7 @@ protected:
 
     const test::TestFolder folder_;
     const std::filesystem::path file_ = folder_ / "test.fcrec";
-    const feed::ChannelInfo info_ = test::synthetic_info("hall");
+    const feed::ChannelInfo info_ = small_info();
     WorkerPool pool_{1};
     std::vector<feed::FramePtr> frames_;
     std::vector<std::uint64_t> ends_; ///< of each frame in the file
@@ -208,10 +215,10 @@ TEST_F(RecordingTest, RecordsAChannelAsItIsPublished) {
 /// Two and a half loops: ids grow, key frames belong to their loop, loops begin with a cut.
 TEST_F(RecordingTest, ReplaysInALoop) {
     write();
+    Guarded<std::vector<feed::FramePtr>> shown;
+    std::condition_variable changed; // outlives the replay, which may call once more after the subscription has ended
     Replay replay({.file = file_, .name = "again", .frames_per_second = 200.0F}, registry_);
     EXPECT_EQ(replay.feed()->info().name, "again");
-    Guarded<std::vector<feed::FramePtr>> shown;
-    std::condition_variable changed;
     auto subscription = feed::Feed::subscribe(replay.feed(), views_wish(info_), [&](const feed::FramePtr& frame) {
         shown.lock()->push_back(frame);
         changed.notify_all();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording behind the real service: the server's whole path without Vulkan. Runs under the thread sanitizer, too.
+// A recording behind the real service: the server's whole path without Vulkan.
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"

@@ -16,6 +16,7 @@ fieldcast_test(server_session_test LABELS quick tsan
 fieldcast_test(server_recording_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_recording_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_replay_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_session)
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
@@ -39,12 +40,8 @@ fieldcast_test(server_channel_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_turns_test.cpp
     DEPENDS fieldcast_server_channel)
-fieldcast_test(server_replay_test LABELS quick tsan
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
-            ${CMAKE_CURRENT_LIST_DIR}/server_replay_test.cpp
-    DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_service)
 # Not under the thread sanitizer: the distribution's gRPC is built without it, so every handover between its threads looks
-# like a race. What the server's own threads share is in server_session_test.
+# like a race. What the server's own threads share is in the tests with the label tsan.
 if(NOT FIELDCAST_SANITIZE MATCHES thread)
     fieldcast_test(server_service_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
@@ -53,6 +50,10 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_steering_service_test.cpp
         DEPENDS server_synthetic fieldcast_server_service)
+    fieldcast_test(server_replay_test LABELS quick
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
+                ${CMAKE_CURRENT_LIST_DIR}/server_replay_test.cpp
+        DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_service)
     fieldcast_test(server_limits_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp
