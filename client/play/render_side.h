@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "client/net/configure.h"
 #include "client/play/scene_player.h"
 #include "client/play/warp_player.h"
 
