@@ -96,7 +96,7 @@ void WarpRun::measure() {
           std::pair("residual_inverse_depth", PlaneSemantic::kResidualInverseDepth),
           std::pair("depth", PlaneSemantic::kDepth), std::pair("normal", PlaneSemantic::kNormal),
           std::pair("id", PlaneSemantic::kId)}) {
-        result_["plane_bytes"][name] = code_plane(*frame.find(semantic), kLossless, nullptr, 1.0F).bytes;
+        result_["plane_bytes"][name] = code_plane(*frame.find(semantic), kLossless, {}, 1.0F).bytes;
     }
     result_["plane_bytes"]["tile_list"] = tile_list_bytes(frame.header.residual.tiles);
     std::vector<Coding> codings{kLossless};
@@ -119,7 +119,7 @@ void WarpRun::measure_views(const Views& finished, const Coding& coding) {
     Views decoded = finished;
     double bytes = 0.0;
     for (View& view : decoded.views) {
-        CodedPlane coded = code_plane(view.image, coding, nullptr, 1.0F);
+        CodedPlane coded = code_plane(view.image, coding, {}, 1.0F);
         bytes += coded.bytes;
         view.image = std::move(coded.decoded);
     }
@@ -133,7 +133,7 @@ void WarpRun::measure_views(const Views& finished, const Coding& coding) {
 void WarpRun::measure_scene(const SourceFrame& frame) {
     double bytes = 0.0;
     for (const PlaneSemantic semantic : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {
-        bytes += code_plane(*frame.find(semantic), kLossless, nullptr, frame.header.settings.exposure).bytes;
+        bytes += code_plane(*frame.find(semantic), kLossless, {}, frame.header.settings.exposure).bytes;
     }
     result_["rows"].push_back(
         {{"mode", "scene"}, {"coding", kLossless.name}, {"bytes", bytes}, {"ssim", 1.0}, {"rmse", 0.0}});
@@ -149,7 +149,7 @@ void WarpRun::measure_warp(const SourceFrame& frame, const Views& finished, cons
         const bool is_sent = is_of_source || (has_residual && is_residual(plane.semantic));
         if (is_sent) {
             const bool fits = codec::fits(coding.encoding.codec, plane.format);
-            CodedPlane coded = code_plane(plane, fits ? coding : kLossless, nullptr, 1.0F);
+            CodedPlane coded = code_plane(plane, fits ? coding : kLossless, {}, 1.0F);
             bytes += coded.bytes;
             decoded.planes.push_back(std::move(coded.decoded));
         }
