@@ -66,7 +66,8 @@ void print_table(const nlohmann::ordered_json& result) {
         const auto percent = [&](const char* key) { return number_text(100.0 * row[key].get<double>(), 2) + " %"; };
         std::cout << std::left << std::setw(6) << row["grid"].get<std::string>() << std::right << std::setw(8)
                   << number_text(row["rmse"], 4) << std::setw(8) << number_text(row["ssim"], 4) << std::setw(8)
-                  << number_text(row["ssim_without_noise"], 4) << std::setw(12) << number_text(row["ssim_min"], 4) << std::setw(11) << percent("discard_share") << std::setw(9)
+                  << number_text(row["ssim_without_noise"], 4) << std::setw(12) << number_text(row["ssim_min"], 4)
+                  << std::setw(11) << percent("discard_share") << std::setw(9)
                   << percent("traced_share") << std::setw(12) << number_text(row["hole_paths"], 0) << std::setw(7)
                   << number_text(row["frame_ms"], 0) << " ms\n";
     }

@@ -67,14 +67,15 @@ report::Markup views(const Rows& rows) {
 }
 
 report::Markup all_numbers(const Rows& rows) {
-    report::Table table{.titles = {"grid", "RMSE", "SSIM", "worst view", "SSIM*", "RMSE of holes", "of reused", "discards",
-                                   "path traced", "hole paths", "frame"},
+    report::Table table{.titles = {"grid", "RMSE", "SSIM", "worst view", "SSIM*", "RMSE of holes", "of reused",
+                                   "discards", "path traced", "hole paths", "frame"},
                         .rows = {}};
     for (const auto& [name, row] : rows) {
         const auto percent = [&](const char* key) { return report::fixed(100.0 * row[key].get<double>(), 2) + " %"; };
         table.rows.push_back({name, number_text(row["rmse"], 4), number_text(row["ssim"], 4),
-                              number_text(row["ssim_min"], 4), number_text(row["ssim_without_noise"], 4), number_text(row["rmse_holes"], 4),
-                              number_text(row["rmse_reused"], 4), percent("discard_share"), percent("traced_share"),
+                              number_text(row["ssim_min"], 4), number_text(row["ssim_without_noise"], 4),
+                              number_text(row["rmse_holes"], 4), number_text(row["rmse_reused"], 4),
+                              percent("discard_share"), percent("traced_share"),
                               number_text(row["hole_paths"], 0), number_text(row["frame_ms"], 0) + " ms"});
     }
     return report::table(table);

@@ -118,8 +118,8 @@ report::Markup light_field(const Rows& rows, const std::string& highlighted) {
 }
 
 report::Markup all_numbers(const Rows& rows, const std::string& highlighted) {
-    report::Table table{.titles = {"input", "RMSE", "SSIM", "RMSE*", "SSIM*", "relMSE", "holes", "reused", "border", "moving", "discards",
-                                   "path traced", "frame"},
+    report::Table table{.titles = {"input", "RMSE", "SSIM", "RMSE*", "SSIM*", "relMSE", "holes", "reused", "border",
+                                   "moving", "discards", "path traced", "frame"},
                         .rows = {}};
     for (const auto& [name, row] : rows) {
         const auto percent = [&](const char* key) {
