@@ -63,7 +63,8 @@ struct SourceRenderer::State {
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
     const Camera now = widened_source(header, 0);
     return has_stored_history && !header.cut && keeps_punctual_apart(header) == keeps_punctual_apart(last) &&
-           previous.size() == header.source_positions.size() && previous[0].width_px == now.width_px && previous[0].height_px == now.height_px;
+           previous.size() == header.source_positions.size() && previous[0].width_px == now.width_px &&
+           previous[0].height_px == now.height_px;
 }
 
 // Frames without motion up to this one, as far as they are averaged.
