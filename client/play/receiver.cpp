@@ -37,7 +37,7 @@ struct Receiver::SessionState {
 };
 
 Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-                   Extras extras)
+                   ReceiverExtras extras)
     : server_(server), wish_(wish), changes_(std::move(extras.changes)), scene_hash_(scene_hash),
       pilot_(extras.steering ? std::optional<Pilot>(std::move(*extras.steering)) : std::nullopt),
       recorder_(extras.recorder),

@@ -30,19 +30,21 @@ struct Failure {
     bool was_refused = false; ///< the server will not do what was asked, or for whom: another wish or token may work
 };
 
+/// What a receiver may do besides.
+struct ReceiverExtras {
+    std::optional<SteeringOptions> steering{}; ///< moves the camera, too
+    std::vector<Change> changes{};             ///< are asked for on the running stream
+    /// Gets frames that are superseded, and arrivals a record; null: none. Must outlive this.
+    timing::Recorder* recorder = nullptr;
+};
+
 /// Keeps a session with a server: opens it, decodes frames into the mailbox, comes back after interruptions. Has one
 /// thread, which may block on the network and on decoding.
 class Receiver {
 public:
-    struct Extras {
-        std::optional<SteeringOptions> steering{}; ///< moves the camera, too
-        std::vector<Change> changes{};             ///< are asked for on the running stream
-        /// Gets frames that are superseded, and arrivals a record; null: none. Must outlive this.
-        timing::Recorder* recorder = nullptr;
-    };
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
     Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
-             Extras extras);
+             ReceiverExtras extras = {});
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }

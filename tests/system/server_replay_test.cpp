@@ -26,7 +26,8 @@ protected:
         session::Limits limits;
         limits.max_opens_per_second_per_peer = 1000.0; // clients that come and go
         server_.emplace(HostPort{.host = "127.0.0.1", .port = 0},
-                        std::vector<std::shared_ptr<feed::Feed>>{replay_->feed()}, limits, access::Security{}, registry_);
+                        std::vector<std::shared_ptr<feed::Feed>>{replay_->feed()}, limits, access::Security{},
+                        service::Observation{.registry = registry_});
     }
 
     /// What the recording has for `wish` in the frame that became `frame_id`.
