@@ -18,7 +18,10 @@ constexpr std::uint64_t kMaxFrameBytes = 4U << 20; ///< a client takes 1 GiB; th
 class Client {
 public:
     explicit Client(std::uint8_t wish) {
-        wish_.mode = (wish & 1U) == 0 ? net::Mode::kViews : net::Mode::kScene;
+        wish_.mode = (wish & 1U) != 0 ? net::Mode::kScene : (wish & 2U) != 0 ? net::Mode::kWarp : net::Mode::kViews;
+        if ((wish & 4U) != 0) {
+            wish_.adaptation.emplace();
+        }
         wish_.codecs = {codec::CodecId::kH264, codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered, codec::CodecId::kRaw};
     }
 
@@ -35,6 +38,9 @@ public:
         case v1::ServerMessage::kRefused:
         case v1::ServerMessage::kHeartbeat:
         case v1::ServerMessage::kGoingAway:
+        case v1::ServerMessage::kSteeringGranted:
+        case v1::ServerMessage::kSteeringDenied:
+        case v1::ServerMessage::kSteeringReleased:
         case v1::ServerMessage::MESSAGE_NOT_SET:
             return; // shown to people, or counted
         }

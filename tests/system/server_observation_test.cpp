@@ -22,7 +22,8 @@ protected:
     std::unique_ptr<service::GrpcServer> serve(const std::shared_ptr<feed::Feed>& channel,
                                                const session::Limits& limits = {}) {
         return std::make_unique<service::GrpcServer>(HostPort{.host = "127.0.0.1", .port = 0}, std::vector{channel},
-                                                     limits, access::Security{}, registry_);
+                                                     limits, access::Security{},
+                                                     service::Observation{.registry = registry_});
     }
 
     std::string page() { return registry_->page().text(); }
