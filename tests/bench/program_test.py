@@ -98,6 +98,7 @@ class Program(unittest.TestCase):
         parts = ["diffuse", "specular", "light", "depth", "normal", "id", "material", "view"]
         lossless = {(part, coding) for part in parts for coding in ("raw", "zstd", "zstd, key frame")}
         lossy = {(part, f"jpeg {quality}") for part in ("diffuse", "specular", "light", "view") for quality in (30, 90)}
+        lossy |= {("view", f"h264 {quality}{alone}") for quality in (30, 90) for alone in ("", " alone")}
         self.assertEqual(lossless | lossy, set(rows))
         number = lambda part, coding, column: float(rows[part, coding][column])
         for part in ("light", "view"):
