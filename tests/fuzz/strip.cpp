@@ -31,9 +31,10 @@ void decode(Bytes input, const codec::StripHeader& header, codec::CodecId codec,
     constexpr std::byte kBefore{0x5A};
     Plane reference = plane;
     fill(reference);
-    const std::vector<std::byte> base =
-        header.is_predicted ? codec::encode_strip(reference, header.band, {.encoding = {codec::CodecId::kH264, 75}})
-                            : std::vector<std::byte>();
+    std::vector<std::byte> base;
+    if (header.is_predicted && plane.format == PlaneFormat::kRgb8) {
+        base = codec::encode_strip(reference, header.band, {.encoding = {codec::CodecId::kH264, 75}});
+    }
     for (const Plane* const known : {static_cast<const Plane*>(nullptr), static_cast<const Plane*>(&reference)}) {
         std::ranges::fill(plane.bytes, kBefore);
         const auto result = codec::decode_strip(input, header.band, {codec, known, base}, plane);
