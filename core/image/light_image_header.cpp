@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The layout of OpenEXR files: "OpenEXR File Layout", Academy Software Foundation (openexr.com), sections "Magic
-// Number and Version Field" and "Header". All numbers are little-endian.
+// Number and Version Field", "Header" and "Attribute Types". All numbers are little-endian.
 #include "core/image/light_image_header.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -36,6 +37,68 @@ std::uint32_t little32(std::string_view bytes) {
         value |= std::uint32_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
     }
     return value;
+}
+
+struct TypeSize {
+    std::string_view type;
+    std::size_t bytes;
+};
+
+/// "Attribute Types". OpenEXR reads as many bytes as the type has, whatever size stands before the value.
+constexpr std::array kTypeSizes{
+    TypeSize{"box2f", 16},         TypeSize{"box2i", 16},   TypeSize{"chromaticities", 32}, TypeSize{"compression", 1},
+    TypeSize{"deepImageState", 1}, TypeSize{"double", 8},   TypeSize{"envmap", 1},          TypeSize{"float", 4},
+    TypeSize{"int", 4},            TypeSize{"keycode", 28}, TypeSize{"lineOrder", 1},       TypeSize{"m33d", 72},
+    TypeSize{"m33f", 36},          TypeSize{"m44d", 128},   TypeSize{"m44f", 64},           TypeSize{"rational", 8},
+    TypeSize{"tiledesc", 9},       TypeSize{"timecode", 8}, TypeSize{"v2d", 16},            TypeSize{"v2f", 8},
+    TypeSize{"v2i", 8},            TypeSize{"v3d", 24},     TypeSize{"v3f", 12},            TypeSize{"v3i", 12},
+};
+
+/// Removes one channel: its name and 16 bytes. False at the end of the list.
+bool skip_channel(std::string_view& list) {
+    const std::size_t end = list.find('\0');
+    if (end == std::string_view::npos || end == 0) {
+        return false;
+    }
+    list.remove_prefix(std::min(end + 17, list.size()));
+    return true;
+}
+
+/// The channels end where their value does: with an empty name.
+bool is_channel_list(std::string_view value) {
+    while (skip_channel(value)) {
+    }
+    return value.size() == 1 && value.front() == '\0';
+}
+
+/// Two sides and a pixel of four bytes for each.
+bool is_preview(std::string_view value) {
+    return value.size() >= 8 && std::uint64_t{little32(value)} * little32(value.substr(4)) == (value.size() - 8) / 4 &&
+           value.size() % 4 == 0;
+}
+
+/// Sizes, each before its string.
+bool is_string_list(std::string_view value) {
+    while (value.size() >= 4 && little32(value) <= value.size() - 4) {
+        value.remove_prefix(4 + little32(value));
+    }
+    return value.empty();
+}
+
+/// Whether OpenEXR finds the end of a value where its declared size puts it: it would take other bytes for the next
+/// attribute otherwise, and allocate what they say.
+bool has_size_of_type(std::string_view type, std::string_view value) {
+    if (type == "chlist") {
+        return is_channel_list(value);
+    }
+    if (type == "preview") {
+        return is_preview(value);
+    }
+    if (type == "stringvector") {
+        return is_string_list(value);
+    }
+    const auto* const found = std::ranges::find(kTypeSizes, type, &TypeSize::type);
+    return found == kTypeSizes.end() || found->bytes == value.size();
 }
 
 /// Reads the headers of an OpenEXR file, one per part.
@@ -95,13 +158,17 @@ private:
         if (!name || name->empty()) {
             return name ? Decoded<Attribute>(Attribute{}) : tl::unexpected(name.error());
         }
-        if (const auto type = text(); !type) {
+        const auto type = text();
+        if (!type) {
             return tl::unexpected(type.error());
         }
         if (bytes_.size() < 4 || little32(bytes_) > bytes_.size() - 4) {
             return decode_error("an attribute of the OpenEXR header is larger than the header may be");
         }
         const Attribute attribute{*name, bytes_.substr(4, little32(bytes_))};
+        if (*type == "idmanifest" || !has_size_of_type(*type, attribute.value)) {
+            return decode_error("an attribute of the OpenEXR header has a size that is not its type's");
+        }
         bytes_.remove_prefix(4 + attribute.value.size());
         return attribute;
     }
@@ -133,8 +200,7 @@ private:
     /// A name and 16 bytes each.
     static bool has_few_channels(std::string_view list) {
         std::size_t count = 0;
-        for (std::size_t end = list.find('\0'); end != std::string_view::npos && end > 0; end = list.find('\0')) {
-            list.remove_prefix(std::min(end + 17, list.size()));
+        while (skip_channel(list)) {
             ++count;
         }
         return count <= kMaxChannels;

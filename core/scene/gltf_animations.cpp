@@ -11,6 +11,7 @@ namespace {
 
 /// Over all channels: many channels may share the same few bytes.
 constexpr std::uint64_t kMaxKeys = 1ULL << 24;
+constexpr float kMaxTime_s = 1e6F; ///< eleven days; in float, keys stand 1/16 s apart there
 
 class AnimationReader {
 public:
@@ -87,6 +88,9 @@ private:
         if (channel.times_s.front() < 0.0F || std::adjacent_find(channel.times_s.begin(), channel.times_s.end(),
                                                                  std::greater_equal<>()) != channel.times_s.end()) {
             document_.refuse(object, "times are negative or not increasing");
+        }
+        if (channel.times_s.back() > kMaxTime_s) {
+            document_.refuse(object, "lasts longer than " + std::to_string(static_cast<int>(kMaxTime_s)) + " s");
         }
         if (channel.path == AnimationPath::kRotation) {
             channel.values = accessors_.read_vectors<4>(sampler.output, object + ": values");

@@ -145,6 +145,7 @@ TEST(GltfAnimations, RefusesBrokenChannels) {
     EXPECT_THAT(refusal(animated("translation", {0, 0}, two, "LINEAR")),
                 HasSubstr("animation 0 'a': node 0 'triangle': times are negative or not increasing"));
     EXPECT_THAT(refusal(animated("translation", {-1, 0}, two, "LINEAR")), HasSubstr("times are negative"));
+    EXPECT_THAT(refusal(animated("translation", {0, 2e6F}, two, "LINEAR")), HasSubstr("lasts longer than 1000000 s"));
     EXPECT_THAT(refusal(animated("translation", {0, NAN}, two, "LINEAR")),
                 HasSubstr("element 1 is not a finite number"));
     EXPECT_THAT(refusal(animated("translation", {0, 1}, {0, 0, 0, INFINITY, 0, 0}, "LINEAR")),

@@ -31,6 +31,7 @@ FrameHeader synthetic_header(const feed::ChannelInfo& info, std::uint64_t frame_
     header.seed = static_cast<std::uint32_t>(frame_id);
     header.source = make_camera(glm::mat4(1.0F), info.fovy_rad, info.source_width_px, info.source_height_px);
     header.guard_band = info.guard_band;
+    header.inverse_depth_unit = 0.01F; // frames for clients without the scene have planes of inverse depth
     return header;
 }
 
