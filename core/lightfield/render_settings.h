@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kMaxLightCandidates = 64;
 
 /// How next event estimation chooses its light sample; every choice is unbiased (docs/lightfield.md).
 struct LightSampling {
-    std::uint32_t candidates = 4; ///< resampled importance sampling from so many unshadowed candidates, 1 to 64
+    std::uint32_t candidates = 4; ///< 1 to 64, unshadowed, at the first two vertices; resampling keeps one
     bool each_kind = true;        ///< at the first vertex: a sample of each kind of light (environment, emissive, punctual)
 
     /// One sample of all lights, as in the paper.

@@ -59,6 +59,17 @@ LightShare share_of_kind(SceneInfo info, uint kind) {
                       : (kind == 1u ? LightShare(environment, emitters) : LightShare(emitters, emitters + info.probability_light));
 }
 
+// Candidates of one sample of next event estimation at vertex `bounce`. From the third vertex on more than one costs
+// more than it saves in noise.
+uint candidates_at(PathSettings settings, uint bounce) {
+    return bounce < 2u ? settings.light_candidates : 1u;
+}
+
+// Of the kind `kind`, where each has its sample: a single lamp or sun leaves no choice.
+uint candidates_of_kind(SceneInfo info, uint candidates, bool each_kind, uint kind) {
+    return each_kind && kind == kPunctualKind && info.light_count == 1u ? 1u : candidates;
+}
+
 // A light sample chosen from `candidates` by what it would reflect if nothing blocked it, weighted against the BSDF's
 // sampling; its weight is light without the surface's reflection, zero if no candidate reflects.
 // Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice`, have
@@ -118,24 +129,25 @@ vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, LightShare share, uint can
 }
 
 // Emission met by a sampled direction, weighted against next event estimation.
-vec3 emitted_light(SceneInfo info, PathSettings settings, bool each_kind, Surface s, vec3 direction, float distance_m,
-                   float pdf) {
+vec3 emitted_light(SceneInfo info, PathSettings settings, bool each_kind, uint candidates, Surface s, vec3 direction,
+                   float distance_m, float pdf) {
     if (!settings.next_event_estimation || s.emitter == kNoIndex) {
         return s.emission;
     }
     float cos_light = abs(dot(s.geometric_normal, direction));
     float expected = each_kind ? 1.0 : info.probability_emitter;
-    float light_pdf = expected * float(settings.light_candidates) * pdf_emitter(s.emitter, s.area_m2, distance_m, cos_light);
+    float light_pdf = expected * float(candidates) * pdf_emitter(s.emitter, s.area_m2, distance_m, cos_light);
     return s.emission * power_heuristic(pdf, light_pdf);
 }
 
-vec3 environment_light(SceneInfo info, PathSettings settings, bool each_kind, vec3 normal, vec3 direction, float pdf) {
+vec3 environment_light(SceneInfo info, PathSettings settings, bool each_kind, uint candidates, vec3 normal,
+                       vec3 direction, float pdf) {
     vec3 radiance = environment_radiance(info, direction);
     if (!settings.next_event_estimation || info.probability_environment == 0.0) {
         return radiance;
     }
     float expected = each_kind ? 1.0 : info.probability_environment;
-    float light_pdf = expected * float(settings.light_candidates) * pdf_environment(info, normal, direction);
+    float light_pdf = expected * float(candidates) * pdf_environment(info, normal, direction);
     return radiance * power_heuristic(pdf, light_pdf);
 }
 
@@ -157,6 +169,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
 
     for (uint bounce = 0u; bounce < settings.max_bounces; ++bounce) {
         bool each_kind = settings.each_light_kind && bounce == 0u;
+        uint candidates = candidates_at(settings, bounce);
         vec2 choices = next_pair(rng);
         vec2 light_u = next_pair(rng);
         vec2 bsdf_u = next_pair(rng);
@@ -168,7 +181,8 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
                     continue;
                 }
                 BsdfValue value;
-                vec3 light = sample_direct(info, s, b, share, settings.light_candidates, choices.x, light_u, picks.x, value);
+                uint choice_count = candidates_of_kind(info, candidates, each_kind, kind);
+                vec3 light = sample_direct(info, s, b, share, choice_count, choices.x, light_u, picks.x, value);
                 if (bounce == 0u) {
                     if (each_kind && kind == kPunctualKind) {
                         result.punctual = light * value.diffuse;
@@ -206,12 +220,12 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         vec3 arriving;
         bool ends = hit.instance == kNoInstance;
         if (ends) {
-            arriving = environment_light(info, settings, each_kind, normal, direction, value.pdf);
+            arriving = environment_light(info, settings, each_kind, candidates, normal, direction, value.pdf);
         } else {
             cone_spread += 0.1 * sqrt(b.alpha);
             cone_width_m += cone_spread * hit.t;
             s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width_m);
-            arriving = emitted_light(info, settings, each_kind, s, direction, hit.t, value.pdf);
+            arriving = emitted_light(info, settings, each_kind, candidates, s, direction, hit.t, value.pdf);
             b = make_bsdf(s, direction);
 #ifdef PATH_ENDS_IN_SOURCE
             vec3 reflected = vec3(0.0);
