@@ -50,6 +50,7 @@ struct LightShare {
     float to;
 };
 
+const uint kEnvironmentKind = 0u;
 const uint kPunctualKind = 2u;
 
 LightShare share_of_kind(SceneInfo info, uint kind) {
@@ -65,9 +66,11 @@ uint candidates_at(PathSettings settings, uint bounce) {
     return bounce < 2u ? settings.light_candidates : 1u;
 }
 
-// Of the kind `kind`, where each has its sample: a single lamp or sun leaves no choice.
+// Of the kind `kind`, where each has its sample. Candidates for the environment would have the same place in it, and a
+// single lamp or sun leaves no choice.
 uint candidates_of_kind(SceneInfo info, uint candidates, bool each_kind, uint kind) {
-    return each_kind && kind == kPunctualKind && info.light_count == 1u ? 1u : candidates;
+    bool is_one = kind == kEnvironmentKind || (kind == kPunctualKind && info.light_count == 1u);
+    return each_kind && is_one ? 1u : candidates;
 }
 
 // A light sample chosen from `candidates` by what it would reflect if nothing blocked it, weighted against the BSDF's
@@ -147,7 +150,8 @@ vec3 environment_light(SceneInfo info, PathSettings settings, bool each_kind, ui
         return radiance;
     }
     float expected = each_kind ? 1.0 : info.probability_environment;
-    float light_pdf = expected * float(candidates) * pdf_environment(info, normal, direction);
+    uint count = candidates_of_kind(info, candidates, each_kind, kEnvironmentKind);
+    float light_pdf = expected * float(count) * pdf_environment(info, normal, direction);
     return radiance * power_heuristic(pdf, light_pdf);
 }
 
