@@ -75,7 +75,8 @@ void check(const fanout::FanoutSettings& settings) {
         throw UserError("--clients: name at least two numbers; what one more client costs is the slope between them");
     }
     if (!std::filesystem::exists(settings.server)) {
-        throw UserError("--server " + settings.server.string() + ": there is no such program; build it with ./fieldcast build");
+        throw UserError("--server " + settings.server.string() +
+                        ": there is no such program; build it with ./fieldcast build");
     }
 }
 

@@ -165,7 +165,8 @@ BareServer::BareServer(const MessageLoop& loop, double frames_per_second) : stat
     if (state_->server == nullptr || state_->port == 0) {
         throw std::runtime_error("cannot listen on 127.0.0.1");
     }
-    const auto interval = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / frames_per_second));
+    const auto interval =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / frames_per_second));
     state_->pacer =
         std::jthread([&state = *state_, interval](const std::stop_token& stop) { state.pace(stop, interval); });
 }

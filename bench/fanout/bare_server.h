@@ -7,9 +7,9 @@
 
 namespace fieldcast::bench::fanout {
 
-/// The yardstick: a gRPC server that sends the same messages to whoever calls, whatever the method and whatever it says.
-/// At every interval the next frame begins, for each client that has got all of the one before. Messages are shared
-/// slices; nothing is serialised, counted, timed or acknowledged, and nothing is known of a client but where it is in the frame.
+/// The yardstick: a gRPC server that sends the same messages to whoever calls, whatever they call or say. At every
+/// interval the next frame begins, for each client that has got all of the one before. Messages are shared slices;
+/// nothing is serialised, counted, timed or acknowledged.
 class BareServer {
 public:
     /// On a free port of the loopback address.

@@ -17,8 +17,8 @@ struct MessageLoop {
     bool operator==(const MessageLoop&) const = default;
 };
 
-/// For another process on this machine: u64 count of frames; of each, u64 count of messages; of each, u64 length, bytes.
-/// Throws UserError if the file cannot be written.
+/// For another process on this machine: u64 count of frames; of each, u64 count of messages; of each, u64 length and
+/// bytes. Throws UserError if the file cannot be written.
 void write_messages(const std::filesystem::path& file, const MessageLoop& loop);
 
 /// Throws UserError if the file is none of these.

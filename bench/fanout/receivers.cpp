@@ -61,7 +61,8 @@ std::shared_ptr<grpc::Channel> connect(int port) {
     grpc::ChannelArguments arguments;
     arguments.SetMaxReceiveMessageSize(-1);
     arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1); // otherwise all clients share one connection
-    return grpc::CreateCustomChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials(), arguments);
+    const std::string address = "127.0.0.1:" + std::to_string(port);
+    return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
 }
 
 /// One client. Reactions run in gRPC's threads, a read's and a write's at the same time.

@@ -8,8 +8,9 @@
 
 namespace fieldcast::bench::fanout {
 
-/// Clients of LightField.Open, each with a connection of its own, that ask for what the channel has, count what comes and
-/// acknowledge frames. They read no payload: a message is parsed only if it is small. All of it runs in gRPC's threads.
+/// Clients of LightField.Open, each with a connection of its own, that ask for what the channel has, count what comes
+/// and acknowledge frames. They read no payload: a message is parsed only if it is small. All of it runs in gRPC's
+/// threads.
 class Receivers {
 public:
     /// To a port of this machine, in plain text.

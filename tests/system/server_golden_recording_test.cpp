@@ -55,7 +55,7 @@ TEST(GoldenRecording, Version1TellsItsChannel) {
     EXPECT_EQ(info.guard_band.bottom_px, 1U);
     EXPECT_EQ(info.camera, "LightField");
     ASSERT_EQ(info.bundle->size(), 100U);
-    EXPECT_EQ(info.bundle->back(), static_cast<std::byte>(3 * 99));
+    EXPECT_EQ(info.bundle->back(), std::byte{3 * 99 % 256});
 }
 
 TEST(GoldenRecording, Version1TellsItsForms) {
