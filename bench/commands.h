@@ -23,6 +23,9 @@ void add_codecs_command(CLI::App& app);
 /// Views made without the scene: bytes, errors, time.
 void add_warp_command(CLI::App& app);
 
+/// What one more client costs the server, against a bare gRPC stream.
+void add_fanout_command(CLI::App& app);
+
 /// Errors of views against references (the paper's table 1).
 void add_quality_command(CLI::App& app);
 

@@ -19,6 +19,7 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_holes_command(app);
     fieldcast::bench::add_codecs_command(app);
     fieldcast::bench::add_warp_command(app);
+    fieldcast::bench::add_fanout_command(app);
     fieldcast::bench::add_quality_command(app);
     fieldcast::bench::add_grids_command(app);
     fieldcast::bench::add_sources_command(app);

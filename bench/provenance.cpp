@@ -63,4 +63,8 @@ nlohmann::ordered_json provenance(const gpu::Device& device) {
             {"finished", utc_time()}};
 }
 
+nlohmann::ordered_json provenance() {
+    return {{"processor", processor()}, {"commit", kCommit}, {"command", command_line()}, {"finished", utc_time()}};
+}
+
 } // namespace fieldcast::bench

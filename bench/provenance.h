@@ -11,4 +11,7 @@ namespace fieldcast::bench {
 /// the tree had changes when it was built), command line, UTC time.
 nlohmann::ordered_json provenance(const gpu::Device& device);
 
+/// The same of a benchmark that uses no device.
+nlohmann::ordered_json provenance();
+
 } // namespace fieldcast::bench

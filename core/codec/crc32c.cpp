@@ -35,15 +35,21 @@ constexpr std::array<Table, 8> make_tables() {
 
 constexpr auto kTables = make_tables();
 
-constexpr std::uint32_t times_x(std::uint32_t a) {
-    return (a >> 1) ^ ((a & 1) != 0 ? kPolynomial : 0);
+/// All ones if `bit` is 1, else 0.
+constexpr std::uint32_t mask_of(std::uint32_t bit) {
+    return 0U - bit;
 }
 
-/// Product of two polynomials modulo the CRC polynomial.
+constexpr std::uint32_t times_x(std::uint32_t a) {
+    return (a >> 1) ^ (kPolynomial & mask_of(a & 1));
+}
+
+/// Product of two polynomials modulo the CRC polynomial. Without branches: the bits are random, half of the branches
+/// would be mispredicted, and each client's frame takes hundreds of products.
 constexpr std::uint32_t multiply(std::uint32_t a, std::uint32_t b) {
     std::uint32_t product = 0;
-    for (; a != 0; a <<= 1) {
-        product ^= (a & 0x80000000U) != 0 ? b : 0;
+    for (int bit = 0; bit < 32; ++bit, a <<= 1) {
+        product ^= b & mask_of(a >> 31);
         b = times_x(b);
     }
     return product;

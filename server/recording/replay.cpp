@@ -15,10 +15,11 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
 constexpr std::chrono::milliseconds kLongestDelay{500}; ///< after which a replay goes on from now
+constexpr double kLongestInterval_s = 86'400.0;         ///< so that a loop's length fits whatever a file says
 
 nanoseconds interval_of(float frames_per_second) {
-    return std::chrono::duration_cast<nanoseconds>(
-        std::chrono::duration<double>(1.0 / static_cast<double>(frames_per_second)));
+    const double seconds = std::min(1.0 / static_cast<double>(frames_per_second), kLongestInterval_s);
+    return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(seconds));
 }
 
 feed::ChannelInfo info_of(const Recording& recording, const ReplaySetup& setup) {

@@ -97,7 +97,9 @@ void Session::handle(const v1::FrameAck& ack, TimePoint now) {
 
 void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
     if (!configuration_ || !feed::covers(*frame, configuration_->wish)) {
-        counts_.drops.add(DropReason::kReconfigured);
+        if (epoch_ > 1) { // otherwise it was begun before the client came, and is none of its frames
+            counts_.drops.add(DropReason::kReconfigured);
+        }
         return;
     }
     if (is_too_soon(now)) {

@@ -2,10 +2,12 @@
 // Usage: make_fuzz_corpus FOLDER. Writes the inputs of binary targets that are made from our own messages and files;
 // the others in corpus/ were written by hand or found by libFuzzer.
 #include "core/scene/bundle.h"
+#include "server/recording/record.h"
 #include "server/session/session.h"
 #include "tests/fuzz/input.h"
 #include "tests/scene/gltf_builder.h"
 #include "tests/system/server_synthetic.h"
+#include "tests/system/server_synthetic_recording.h"
 
 #include <fstream>
 
@@ -122,6 +124,43 @@ void write_sessions(const fs::path& folder) {
     }
 }
 
+/// A recording as the target takes it apart: records without their heads, and without the index.
+std::string records_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::uint64_t file_bytes = fs::file_size(file);
+    std::string records;
+    for (std::uint64_t offset = recording::kMagic.size();;) {
+        const auto head = recording::read_head(stream, offset, file_bytes);
+        if (!head || head->kind == recording::RecordKind::kIndex) {
+            return records;
+        }
+        const auto content = recording::read_content(stream, offset, *head);
+        records += static_cast<char>(head->kind) + fuzz::as_piece(fuzz::as_text(*content));
+        offset += recording::kRecordHeadBytes + content->size();
+    }
+}
+
+void write_recordings(const fs::path& folder) {
+    feed::ChannelInfo info = test::synthetic_info("hall");
+    info.source_width_px = 16;
+    info.source_height_px = 9;
+    info.bundle = std::make_shared<const std::vector<std::byte>>(40);
+    struct Kind {
+        const char* name;
+        std::vector<std::string> forms;
+    };
+    const scene::TempFolder files;
+    const fs::path file = files.write("a.fcrec", std::string());
+    for (const Kind& kind : {Kind{"views", {"views:1x2", "views:2x2:8x4:jpeg:50"}}, Kind{"planes", {"planes:jpeg"}},
+                             Kind{"both", {"views:1x1:raw", "g-buffer"}}}) {
+        test::write_synthetic_recording(file, kind.forms, 2, info);
+        write(folder / "recording" / kind.name, '\1' + records_of(file));
+        write(folder / "recording" / (std::string(kind.name) + "_unfinished"), '\2' + records_of(file));
+    }
+    std::ifstream whole(file, std::ios::binary);
+    write(folder / "recording/file", '\0' + std::string(std::istreambuf_iterator<char>(whole), {}));
+}
+
 /// A triangle with material, texture, light, camera and animation.
 scene::GltfBuilder scene_with_everything() {
     scene::GltfBuilder builder;
@@ -173,6 +212,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     write_sessions(argv[1]);
+    write_recordings(argv[1]);
     write_scenes(argv[1]);
     return 0;
 }

@@ -19,6 +19,7 @@ constexpr std::array kTargets{
     Target{"http_request", http_request},
     Target{"image", image},
     Target{"metrics_page", metrics_page},
+    Target{"recording", recording},
     Target{"scenario", scenario},
     Target{"server_message", server_message},
     Target{"strip", strip},

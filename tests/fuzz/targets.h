@@ -29,6 +29,7 @@ void gltf(Bytes input);           ///< core/scene/gltf_loader
 void http_request(Bytes input);   ///< server/metrics/http_request
 void image(Bytes input);          ///< core/image/image_file: PNG, JPEG, WebP
 void metrics_page(Bytes input);   ///< client/load/metrics_page: what a server tells about itself
+void recording(Bytes input);      ///< server/recording: files that a server is told to replay
 void scenario(Bytes input);       ///< client/load/scenario_file
 void server_message(Bytes input); ///< client/net/configure, clock_sync: what servers send
 void strip(Bytes input);          ///< core/codec: strips of every codec

@@ -251,6 +251,24 @@ TEST_F(RecordingTest, ReplaysInALoop) {
     }
 }
 
+TEST_F(RecordingTest, ReplaysSlowlyAtTinyFrameRates) {
+    write();
+    Guarded<std::size_t> shown(0);
+    std::condition_variable changed;
+    Replay replay({.file = file_, .name = "slow", .frames_per_second = 1e-30F}, registry_);
+    auto subscription = feed::Feed::subscribe(replay.feed(), views_wish(info_), [&](const feed::FramePtr&) {
+        ++*shown.lock();
+        changed.notify_all();
+    });
+    ASSERT_TRUE(subscription.has_value());
+    const auto is_there = [&](std::size_t count, auto patience) {
+        return shown.lock().wait_until(changed, std::chrono::steady_clock::now() + patience,
+                                       [&](std::size_t frames) { return frames >= count; });
+    };
+    EXPECT_TRUE(is_there(1, kPatience));
+    EXPECT_FALSE(is_there(2, 200ms)) << "an interval that does not fit would be none at all";
+}
+
 TEST(RecordingForm, ReadsWhatCanBeTyped) {
     const feed::ChannelInfo info = test::synthetic_info();
     const auto text = [&](const char* form) { return feed::to_text(wish_of(*parse_form(form), info)); };

@@ -213,6 +213,18 @@ TEST_F(SessionTest, SkipsFramesMadeForAnEarlierWish) {
     EXPECT_EQ(dropped(DropReason::kReconfigured), 1U);
 }
 
+TEST_F(SessionTest, FramesBegunBeforeTheClientCameAreNotDropped) {
+    feed_->observe([](const feed::FramePtr&) {}); // the channel runs without it
+    const feed::FramePtr begun = test::synthetic_frame(feed_->info(), feed_->demand(), 1, pool_);
+    configure();
+    feed_->publish(begun);
+    EXPECT_EQ(drain(), 0) << "it has no views";
+    EXPECT_EQ(dropped(DropReason::kReconfigured), 0U);
+    frame_id_ = 1;
+    publish();
+    EXPECT_EQ(drain(), 1);
+}
+
 TEST_F(SessionTest, HeartbeatsTellTheNewestFrame) {
     configure();
     publish();
@@ -247,6 +259,35 @@ TEST_F(SessionTest, GoesAwayWithoutFurtherFrames) {
     EXPECT_EQ(feed_->subscriber_count(), 0U);
     EXPECT_FALSE(session_.is_overdue(now_));
     EXPECT_TRUE(session_.is_overdue(now_ + Limits{}.going_away_deadline));
+}
+
+TEST_F(SessionTest, GoingAwayOvertakesQueuedFramesAndTheRestOfABegunOne) {
+    configure();
+    next();
+    publish();
+    EXPECT_TRUE(next().frame_chunk().has_header()); // frame 1 is being written
+    publish();                                      // frame 2 is queued
+    session_.go_away("night", now_);
+    EXPECT_EQ(next().going_away().reason(), "night");
+    EXPECT_EQ(dropped(DropReason::kLeaving), 1U);
+    EXPECT_EQ(next().frame_chunk().frame_id(), 1U);
+    EXPECT_EQ(drain(), 1) << "frame 1 is completed, frame 2 is not begun";
+}
+
+TEST_F(SessionTest, GoingAwayDoesNotWaitForCredits) {
+    configure();
+    next();
+    for (std::uint32_t frame = 0; frame < kMinCredits; ++frame) {
+        publish();
+        EXPECT_EQ(drain(), 1);
+    }
+    publish(); // has to wait: nothing was acknowledged
+    EXPECT_EQ(drain(), 0);
+    session_.go_away("night", now_);
+    EXPECT_TRUE(next().has_going_away());
+    acknowledge(1);
+    EXPECT_EQ(drain(), 0) << "the queued frame is gone";
+    EXPECT_EQ(dropped(DropReason::kLeaving), 1U);
 }
 
 TEST_F(SessionTest, ClientThatNeverConfiguresIsSentAway) {

@@ -7,10 +7,9 @@
 
 namespace fieldcast::test {
 
-/// Records `count` synthetic frames, 20 ms apart, every fifth a key frame, in those forms.
+/// Records `count` synthetic frames of the channel, 20 ms apart, every fifth a key frame, in those forms.
 inline void write_synthetic_recording(const std::filesystem::path& file, const std::vector<std::string>& forms,
-                                      std::uint64_t count) {
-    feed::ChannelInfo info = synthetic_info("hall");
+                                      std::uint64_t count, feed::ChannelInfo info = synthetic_info("hall")) {
     feed::Demand demand;
     demand.needs_alone = true;
     for (const std::string& form : forms) {

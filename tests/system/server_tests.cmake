@@ -14,10 +14,16 @@ fieldcast_test(server_session_test LABELS quick tsan
             ${CMAKE_CURRENT_LIST_DIR}/server_timings_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_recording_test LABELS quick tsan
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_golden_recording_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_recording_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_replay_session_test.cpp
     DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_session)
+
+# Writes tests/data/recordings/v1.fcrec; run once per version of the file format, never to make a failing test pass.
+add_executable(make_golden_recording ${CMAKE_CURRENT_LIST_DIR}/make_golden_recording.cpp)
+target_link_libraries(make_golden_recording PRIVATE server_synthetic fieldcast_server_recording fieldcast_warnings)
+
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp

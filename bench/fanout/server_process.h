@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <sys/types.h>
+#include <vector>
+
+namespace fieldcast::bench::fanout {
+
+/// A server that runs beside the benchmark and writes its port to a file. Ended by the destructor.
+class ServerProcess {
+public:
+    /// Removes `port_file` and waits until it is there again. Throws std::runtime_error, with what the program said, if
+    /// it ends before.
+    ServerProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                  const std::filesystem::path& port_file, std::chrono::seconds patience);
+    ~ServerProcess();
+    ServerProcess(const ServerProcess&) = delete;
+    ServerProcess& operator=(const ServerProcess&) = delete;
+
+    int port() const { return port_; }
+
+    /// User and system time of all its threads since it was started.
+    std::chrono::nanoseconds cpu_time() const;
+
+private:
+    bool has_ended();
+    void end();
+
+    std::filesystem::path log_;
+    pid_t pid_ = -1;
+    int port_ = 0;
+};
+
+/// Runs a program to its end. Throws std::runtime_error, with what it said, if it fails.
+void run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                 const std::filesystem::path& log);
+
+} // namespace fieldcast::bench::fanout
