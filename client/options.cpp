@@ -78,14 +78,7 @@ void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
         ->capture_default_str();
 }
 
-void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
-    app.add_option(
-           "--mode", text.modes,
-           "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
-           "device; warp: this machine does, without the scene; scene,views or warp,views: if there is a device")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"views", "scene", "warp"}))
-        ->capture_default_str();
+void add_plane_flags(CLI::App& app, FlagText& text) {
     app.add_option("--planes", text.planes,
                    "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
                    "total-light: the same, with one plane of illumination instead of two")
@@ -96,6 +89,17 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
                    "the bytes, and turn normals by less than 1 degree")
         ->check(CLI::IsMember({8U, 16U}))
         ->capture_default_str();
+}
+
+void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
+    app.add_option(
+           "--mode", text.modes,
+           "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
+           "device; warp: this machine does, without the scene; scene,views or warp,views: if there is a device")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"views", "scene", "warp"}))
+        ->capture_default_str();
+    add_plane_flags(app, text);
     app.add_option("--codec", text.codecs,
                    "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
                    "raw, jpeg; of views: h264")

@@ -53,6 +53,15 @@ void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic sema
     }
 }
 
+void add_light_codecs(v1::Configure& message, const Wish& wish) {
+    if (wish.planes == PlaneWish::kTotalLight) {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_TOTAL_LIGHT);
+    } else {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+    }
+}
+
 void add_formats(v1::Configure& message, const Wish& wish) {
     if (wish.has_coarse_normals && wish.planes == PlaneWish::kWithGBuffer) {
         v1::CodecPreference& preference = *message.add_codecs();
@@ -231,12 +240,7 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     message.set_fovy_rad(wish.fovy_rad);
     message.set_planes(to_proto(wish.planes));
     if (wish.mode == Mode::kScene) {
-        if (wish.planes == PlaneWish::kTotalLight) {
-            add_codecs(message, wish, v1::PLANE_SEMANTIC_TOTAL_LIGHT);
-        } else {
-            add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
-            add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
-        }
+        add_light_codecs(message, wish);
         add_formats(message, wish);
     } else {
         add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
