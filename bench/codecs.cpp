@@ -27,14 +27,17 @@ struct CodecsOptions {
 void print_table(const nlohmann::ordered_json& json) {
     std::cout << "source with guard band " << json["source_size"].get<std::string>() << "; means and medians over "
               << json["measured_frames"] << " frames, " << json["view_count"] << " views each; one thread\n"
-              << "part      coding                bytes  encode ms  decode ms  SSIM of views  discards, points\n";
+              << "part        coding                bytes  encode ms  decode ms  SSIM of views  discards, points\n";
     for (const nlohmann::ordered_json& row : json["rows"]) {
-        std::cout << std::left << std::setw(10) << row["part"].get<std::string>() << std::setw(17)
+        std::cout << std::left << std::setw(12) << row["part"].get<std::string>() << std::setw(17)
                   << row["coding"].get<std::string>() << std::right << std::setw(10) << number_text(row["bytes"], 0)
                   << std::setw(11) << number_text(row["encode_ms"], 2) << std::setw(11)
                   << number_text(row["decode_ms"], 2) << std::setw(15) << number_text(row["ssim"], 4) << std::setw(18)
                   << number_text(row["discard_points"], 3) << '\n';
     }
+    const nlohmann::ordered_json& angle = json["coarse_normals_deg"];
+    std::cout << "normals of 8 bits a component are off by " << number_text(angle["mean"], 3) << " degrees on average, "
+              << number_text(angle["max"], 3) << " at most\n";
 }
 
 std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& json) {

@@ -4,9 +4,12 @@
 #include "bench/interrupt.h"
 #include "bench/progress.h"
 #include "core/image/metrics.h"
+#include "core/image/packing.h"
+#include "core/lightfield/normal_precision.h"
 #include "core/wire/base_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace fieldcast::bench {
@@ -16,7 +19,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLight = "light";
+constexpr const char* kTotalLight = "total light";
 constexpr const char* kView = "view";
+const Coding kCoarseNormals{"zstd, oct2x8", {codec::CodecId::kZstdFiltered, 0}};
 
 const char* name_of(PlaneSemantic semantic) {
     switch (semantic) {
@@ -37,12 +42,10 @@ const char* name_of(PlaneSemantic semantic) {
     case PlaneSemantic::kResidualColour:
     case PlaneSemantic::kResidualInverseDepth:
         break;
+    case PlaneSemantic::kTotalLight:
+        return kTotalLight;
     }
     return kView;
-}
-
-bool is_light(PlaneSemantic semantic) {
-    return semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
 }
 
 /// Whether planes of a source frame can be coded so, besides views.
@@ -87,15 +90,31 @@ double discard_share(const Views& views) {
     return discards / pixels;
 }
 
+/// Angles between the directions of two planes of normals, in degrees, pixel by pixel.
+std::vector<double> angles_deg(const Plane& a, const Plane& b) {
+    const std::vector<glm::vec3> of_a = image::unpack_plane(a);
+    const std::vector<glm::vec3> of_b = image::unpack_plane(b);
+    std::vector<double> angles;
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+        const double chord = glm::length(glm::dvec3(of_a[i]) - glm::dvec3(of_b[i]));
+        angles.push_back(glm::degrees(2.0 * std::asin(std::min(chord / 2.0, 1.0))));
+    }
+    return angles;
+}
+
 } // namespace
 
 CodecsRun::CodecsRun(const gpu::Device& device, LightFieldScene& scene, const CodecsSettings& settings)
     : scene_(scene), settings_(settings), codings_(all_codings(settings.qualities)),
       positions_(chosen_positions(scene.grid())), run_(device, scene, render_settings(scene, settings), true),
-      planes_(device), surfaces_(device, scene.gpu_scene()), uncoded_(device, scene.gpu_scene()) {
+      planes_(device), surfaces_(device, scene.gpu_scene()), uncoded_(device, scene.gpu_scene()),
+      coarse_(device, scene.gpu_scene()) {
     for (const Coding& coding : codings_) {
         const bool loses_light = codec::is_lossy(coding.encoding.codec) && is_for_planes(coding);
-        renderers_.push_back(loses_light ? std::make_unique<render::GridRenderer>(device, scene.gpu_scene()) : nullptr);
+        const bool loses_kinds = loses_light || coding.name == "zstd"; // one plane of light is a loss by itself
+        const auto make_renderer = [&] { return std::make_unique<render::GridRenderer>(device, scene.gpu_scene()); };
+        renderers_.push_back(loses_light ? make_renderer() : nullptr);
+        merged_.push_back(loses_kinds ? make_renderer() : nullptr);
     }
 }
 
@@ -128,6 +147,8 @@ void CodecsRun::measure(const SourceFrame& frame) {
         }
         measure_views(uncoded, codings_[i]);
     }
+    measure_coarse_normals(frame, uncoded);
+    measure_total_light(frame, uncoded);
     views_before_ = uncoded;
 }
 
@@ -141,7 +162,7 @@ SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& co
         CodedPlane coded = code_plane(plane, coding, {.before = before_.find(plane.semantic)},
                                       frame.header.settings.exposure);
         samples(name_of(plane.semantic), coding).add(coded);
-        if (is_light(plane.semantic)) {
+        if (is_illumination(plane.semantic)) {
             light.bytes += coded.bytes;
             light.encode_ms += coded.encode_ms;
             light.decode_ms += coded.decode_ms;
@@ -150,6 +171,35 @@ SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& co
     }
     samples(kLight, coding).add(light);
     return decoded;
+}
+
+void CodecsRun::measure_coarse_normals(SourceFrame frame, const Views& uncoded) {
+    const auto normal = std::ranges::find(frame.planes, PlaneSemantic::kNormal, &Plane::semantic);
+    CodedPlane coded = code_plane(coarse_normals(*normal), kCoarseNormals, {}, frame.header.settings.exposure);
+    const std::vector<double> angles = angles_deg(*normal, coded.decoded);
+    mean_angle_deg_ = mean(angles);
+    largest_angle_deg_ = std::max(largest_angle_deg_, *std::ranges::max_element(angles));
+    Samples& of_normals = samples(name_of(PlaneSemantic::kNormal), kCoarseNormals);
+    of_normals.add(coded);
+    *normal = std::move(coded.decoded);
+    compare(make_views(coarse_, frame), uncoded, of_normals);
+}
+
+void CodecsRun::measure_total_light(const SourceFrame& frame, const Views& uncoded) {
+    const Plane light = run_.total_light();
+    for (std::size_t i = 0; i < codings_.size(); ++i) {
+        if (!is_for_planes(codings_[i]) || codings_[i].uses_key_frame) {
+            continue;
+        }
+        SourceFrame received = frame;
+        std::erase_if(received.planes, [](const Plane& plane) { return is_illumination(plane.semantic); });
+        CodedPlane coded = code_plane(light, codings_[i], {}, frame.header.settings.exposure);
+        samples(kTotalLight, codings_[i]).add(coded);
+        received.planes.push_back(std::move(coded.decoded));
+        if (merged_[i]) {
+            compare(make_views(*merged_[i], received), uncoded, samples(kTotalLight, codings_[i]));
+        }
+    }
 }
 
 void CodecsRun::measure_views(const Views& views, const Coding& coding) {
@@ -221,9 +271,12 @@ Json CodecsRun::result() const {
               {"guard_band_share", run_.guard_band().extra_share},
               {"exposure", run_.header().settings.exposure},
               {"measured_frames", settings_.measured},
-              {"view_count", positions_.size()}};
-    for (const char* part : {"diffuse", "specular", kLight, "depth", "normal", "id", "material", kView}) {
-        for (const Coding& coding : codings_) {
+              {"view_count", positions_.size()},
+              {"coarse_normals_deg", {{"mean", mean_angle_deg_}, {"max", largest_angle_deg_}}}};
+    std::vector<Coding> codings = codings_;
+    codings.push_back(kCoarseNormals);
+    for (const char* part : {"diffuse", "specular", kLight, kTotalLight, "depth", "normal", "id", "material", kView}) {
+        for (const Coding& coding : codings) {
             const auto found = samples_.find({part, coding.name});
             if (found != samples_.end()) {
                 json["rows"].push_back(row(part, coding, found->second));

@@ -63,6 +63,7 @@ public:
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);
 
     const render::SourcePlanes& source() const { return *source_; } ///< of the last render()
+    Plane total_light() { return source_renderer_.total_light(); } ///< likewise
     const render::GridRenderer& grid_renderer() const { return grid_renderer_; }
     const FrameHeader& header() const { return header_; }
     const GuardBandChoice& guard_band() const { return guard_band_; }

@@ -4,6 +4,7 @@
 #include "bench/interrupt.h"
 #include "bench/progress.h"
 #include "core/image/metrics.h"
+#include "core/lightfield/normal_precision.h"
 
 #include <algorithm>
 
@@ -98,6 +99,8 @@ void WarpRun::measure() {
           std::pair("id", PlaneSemantic::kId)}) {
         result_["plane_bytes"][name] = code_plane(*frame.find(semantic), kLossless, {}, 1.0F).bytes;
     }
+    const Plane coarse = coarse_normals(*frame.find(PlaneSemantic::kNormal));
+    result_["plane_bytes"]["normal_oct2x8"] = code_plane(coarse, kLossless, {}, 1.0F).bytes;
     result_["plane_bytes"]["tile_list"] = tile_list_bytes(frame.header.residual.tiles);
     std::vector<Coding> codings{kLossless};
     for (const std::uint32_t quality : settings_.qualities) {

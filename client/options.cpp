@@ -56,6 +56,7 @@ struct FlagText {
     float convergence_m = -1.0F;
     bool no_reconnect = false;
     bool no_residual = false;
+    std::uint32_t normal_bits = 16;
     std::string steer;
     bool steers_now = false;
 };
@@ -77,6 +78,19 @@ void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
         ->capture_default_str();
 }
 
+void add_plane_flags(CLI::App& app, FlagText& text) {
+    app.add_option("--planes", text.planes,
+                   "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
+                   "total-light: the same, with one plane of illumination instead of two")
+        ->check(CLI::IsMember({"g-buffer", "illumination", "total-light"}))
+        ->capture_default_str();
+    app.add_option("--normal-bits", text.normal_bits,
+                   "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a fraction of "
+                   "the bytes, and turn normals by less than 1 degree")
+        ->check(CLI::IsMember({8U, 16U}))
+        ->capture_default_str();
+}
+
 void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option(
            "--mode", text.modes,
@@ -85,10 +99,7 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
         ->delimiter(',')
         ->check(CLI::IsMember({"views", "scene", "warp"}))
         ->capture_default_str();
-    app.add_option("--planes", text.planes,
-                   "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest")
-        ->check(CLI::IsMember({"g-buffer", "illumination"}))
-        ->capture_default_str();
+    add_plane_flags(app, text);
     app.add_option("--codec", text.codecs,
                    "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
                    "raw, jpeg; of views: h264")
@@ -204,8 +215,9 @@ void read_text(const FlagText& text, Options& options) {
     }
     wish.mode = mode_of("--mode", text.modes.front());
     wish.has_residual = !text.no_residual;
+    wish.has_coarse_normals = text.normal_bits == 8;
     options.falls_back_to_views = wish.mode != net::Mode::kViews && contains(text.modes, "views");
-    wish.planes = text.planes == "illumination" ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
+    wish.planes = planes_of("--planes", text.planes);
     wish.quality = static_cast<std::uint8_t>(text.quality);
     wish.codecs.clear();
     for (const std::string& word : text.codecs) {

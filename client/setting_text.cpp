@@ -79,8 +79,7 @@ constexpr std::array kSettings{
                 wish.mode = mode_of(what, value);
             }},
     Setting{"planes", [](const auto& what, const auto& value, auto& wish) {
-                const bool rebuilds = is_first_of(what, value, "illumination", "g-buffer");
-                wish.planes = rebuilds ? net::PlaneWish::kIllumination : net::PlaneWish::kWithGBuffer;
+                wish.planes = planes_of(what, value);
             }},
     Setting{"codec", set_codecs},
     Setting{"quality", [](const auto& what, const auto& value, auto& wish) {
@@ -198,6 +197,19 @@ codec::CodecId codec_of(const std::string& what, const std::string& word) {
         throw UserError(what + "=" + word + ": zstd, raw, jpeg or h264; several with +");
     }
     return codec::CodecId::kZstdFiltered;
+}
+
+net::PlaneWish planes_of(const std::string& what, const std::string& word) {
+    if (word == "g-buffer") {
+        return net::PlaneWish::kWithGBuffer;
+    }
+    if (word == "illumination") {
+        return net::PlaneWish::kIllumination;
+    }
+    if (word == "total-light") {
+        return net::PlaneWish::kTotalLight;
+    }
+    throw UserError(what + ": '" + word + "', expected g-buffer, illumination or total-light");
 }
 
 net::Mode mode_of(const std::string& what, const std::string& word) {

@@ -31,6 +31,8 @@ v1::PlaneSet to_proto(PlaneWish planes) {
         return v1::PLANE_SET_WITH_G_BUFFER;
     case PlaneWish::kIllumination:
         return v1::PLANE_SET_ILLUMINATION;
+    case PlaneWish::kTotalLight:
+        return v1::PLANE_SET_TOTAL_LIGHT;
     }
     return v1::PLANE_SET_UNSPECIFIED;
 }
@@ -38,7 +40,8 @@ v1::PlaneSet to_proto(PlaneWish planes) {
 /// Planes for which `Wish::codecs` holds.
 bool is_picture(v1::PlaneSemantic semantic) {
     return semantic == v1::PLANE_SEMANTIC_COLOUR || semantic == v1::PLANE_SEMANTIC_DIFFUSE ||
-           semantic == v1::PLANE_SEMANTIC_SPECULAR || semantic == v1::PLANE_SEMANTIC_RESIDUAL_COLOUR;
+           semantic == v1::PLANE_SEMANTIC_SPECULAR || semantic == v1::PLANE_SEMANTIC_TOTAL_LIGHT ||
+           semantic == v1::PLANE_SEMANTIC_RESIDUAL_COLOUR;
 }
 
 void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic semantic) {
@@ -47,6 +50,24 @@ void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic sema
     preference.set_quality(wish.quality);
     for (const codec::CodecId codec : wish.codecs) {
         preference.add_codecs(wire::to_proto(codec));
+    }
+}
+
+void add_light_codecs(v1::Configure& message, const Wish& wish) {
+    if (wish.planes == PlaneWish::kTotalLight) {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_TOTAL_LIGHT);
+    } else {
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
+        add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+    }
+}
+
+void add_formats(v1::Configure& message, const Wish& wish) {
+    if (wish.has_coarse_normals && wish.planes == PlaneWish::kWithGBuffer) {
+        v1::CodecPreference& preference = *message.add_codecs();
+        preference.set_semantic(v1::PLANE_SEMANTIC_NORMAL);
+        preference.add_formats(v1::PLANE_FORMAT_OCT2X8);
+        preference.add_formats(v1::PLANE_FORMAT_OCT2X16); // of servers or recordings that do not have the other
     }
 }
 
@@ -143,8 +164,7 @@ std::optional<PlaneRoom> plane_room(const v1::PlaneHeader& plane) {
     if (!semantic || !format || !has_size) {
         return std::nullopt;
     }
-    const bool has_layers = *semantic == PlaneSemantic::kDiffuse || *semantic == PlaneSemantic::kSpecular;
-    const std::uint32_t height_px = plane.height_px() * (has_layers ? 1 + kMaxLayers : 1);
+    const std::uint32_t height_px = plane.height_px() * (is_illumination(*semantic) ? 1 + kMaxLayers : 1);
     return PlaneRoom{plane.width_px(), height_px, plane_bytes(*format, plane.width_px(), height_px)};
 }
 
@@ -175,7 +195,9 @@ Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wir
 
 std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set, Mode mode) {
     const auto lacks = [&](PlaneSemantic semantic) { return frame.find(semantic) == nullptr; };
-    if (mode == Mode::kScene && (lacks(PlaneSemantic::kDiffuse) || lacks(PlaneSemantic::kSpecular))) {
+    const bool lacks_light = lacks(PlaneSemantic::kTotalLight) &&
+                             (lacks(PlaneSemantic::kDiffuse) || lacks(PlaneSemantic::kSpecular));
+    if (mode == Mode::kScene && lacks_light) {
         return "frame without illumination planes";
     }
     if (mode == Mode::kWarp && (lacks(PlaneSemantic::kColour) || lacks(PlaneSemantic::kInverseDepth))) {
@@ -218,8 +240,8 @@ v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
     message.set_fovy_rad(wish.fovy_rad);
     message.set_planes(to_proto(wish.planes));
     if (wish.mode == Mode::kScene) {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+        add_light_codecs(message, wish);
+        add_formats(message, wish);
     } else {
         add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
     }

@@ -20,7 +20,11 @@ enum class Mode : std::uint8_t {
 };
 
 /// Of mode kScene.
-enum class PlaneWish : std::uint8_t { kWithGBuffer, kIllumination };
+enum class PlaneWish : std::uint8_t {
+    kWithGBuffer,
+    kIllumination,
+    kTotalLight, ///< illumination in one plane instead of two
+};
 
 /// What the server may change by itself when the connection carries less than we ask for. Zero: nothing of that kind.
 struct AdaptationWish {
@@ -47,6 +51,7 @@ struct Wish {
     std::uint32_t height_px = 0;
     float fovy_rad = 0.0F; ///< vertical
     PlaneWish planes = PlaneWish::kWithGBuffer;
+    bool has_coarse_normals = false; ///< of kWithGBuffer: 8 bits a component rather than 16
     bool has_residual = true; ///< of mode kWarp: also what corner views see and the source does not
     /// Of views, of the illumination in mode kScene or of colour in mode kWarp, most wanted first; other planes are always lossless.
     std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};

@@ -39,7 +39,15 @@ std::string mode_text(const net::Agreement& agreement) {
     case net::Mode::kScene:
         break;
     }
-    return agreement.wish.planes == net::PlaneWish::kIllumination ? "scene, illumination" : "scene, with G-buffer";
+    switch (agreement.wish.planes) {
+    case net::PlaneWish::kIllumination:
+        return "scene, illumination";
+    case net::PlaneWish::kTotalLight:
+        return "scene, total light";
+    case net::PlaneWish::kWithGBuffer:
+        break;
+    }
+    return "scene, with G-buffer";
 }
 
 std::string grid_text(const ViewGrid& grid) {

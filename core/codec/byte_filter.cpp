@@ -244,6 +244,8 @@ ByteFilter filter_for(PlaneFormat format) {
         return {Predictor::kAverage, Layout::kPackedFloats, true};
     case PlaneFormat::kRg8:
         return {Predictor::kGradient, Layout::kBytes, false};
+    case PlaneFormat::kOct2x8:
+        return {Predictor::kGradient, Layout::kBytes, true};
     case PlaneFormat::kRgb8:
         return {Predictor::kGradient, Layout::kGreenBytes, false};
     }

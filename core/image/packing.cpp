@@ -60,14 +60,31 @@ glm::vec2 fold(const glm::vec2& p) {
     return {(1.0F - std::abs(p.y)) * sign_not_zero(p.x), (1.0F - std::abs(p.x)) * sign_not_zero(p.y)};
 }
 
-std::uint32_t pack_snorm16(float value) {
-    const float scaled = std::nearbyint(std::clamp(value, -1.0F, 1.0F) * 32767.0F);
-    return static_cast<std::uint16_t>(static_cast<std::int16_t>(scaled));
+/// `bits` wide, 8 or 16.
+std::uint32_t pack_snorm(float value, int bits) {
+    const auto largest = static_cast<float>((1 << (bits - 1)) - 1);
+    const float scaled = std::nearbyint(std::clamp(value, -1.0F, 1.0F) * largest);
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(scaled)) & ((1U << bits) - 1U);
 }
 
-float unpack_snorm16(std::uint32_t bits) {
-    const auto value = static_cast<std::int16_t>(static_cast<std::uint16_t>(bits & 0xFFFFU));
-    return std::max(static_cast<float>(value) / 32767.0F, -1.0F);
+/// The low `bits` of `word`, 8 or 16.
+float unpack_snorm(std::uint32_t word, int bits) {
+    const auto value = static_cast<std::int32_t>(word << (32 - bits)) >> (32 - bits);
+    return std::max(static_cast<float>(value) / static_cast<float>((1 << (bits - 1)) - 1), -1.0F);
+}
+
+/// A component of `bits` each, x in the low ones.
+std::uint32_t pack_octahedral(const glm::vec3& direction, int bits) {
+    const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+    const glm::vec2 upper = glm::vec2(direction) / sum;
+    const glm::vec2 p = direction.z < 0.0F ? fold(upper) : upper;
+    return pack_snorm(p.x, bits) | pack_snorm(p.y, bits) << bits;
+}
+
+glm::vec3 unpack_octahedral(std::uint32_t packed, int bits) {
+    const glm::vec2 p(unpack_snorm(packed, bits), unpack_snorm(packed >> bits, bits));
+    const float z = 1.0F - std::abs(p.x) - std::abs(p.y);
+    return glm::normalize(glm::vec3(z < 0.0F ? fold(p) : p, z));
 }
 
 std::array<float, 256> srgb_table() {
@@ -98,6 +115,8 @@ glm::vec3 unpack_pixel(const Plane& plane, std::size_t pixel) {
         return {static_cast<float>(byte(2 * pixel)) / 255.0F, static_cast<float>(byte(2 * pixel + 1)) / 255.0F, 0.0F};
     case PlaneFormat::kRgb8:
         return {linear[byte(3 * pixel)], linear[byte(3 * pixel + 1)], linear[byte(3 * pixel + 2)]};
+    case PlaneFormat::kOct2x8:
+        return unpack_oct2x8(static_cast<std::uint32_t>(byte(2 * pixel) | byte(2 * pixel + 1) << 8));
     case PlaneFormat::kR16:
         return glm::vec3(static_cast<float>(byte(2 * pixel) | byte(2 * pixel + 1) << 8));
     case PlaneFormat::kU32:
@@ -119,16 +138,19 @@ glm::vec3 unpack_r11g11b10f(std::uint32_t packed) {
 }
 
 std::uint32_t pack_oct2x16(const glm::vec3& direction) {
-    const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
-    const glm::vec2 upper = glm::vec2(direction) / sum;
-    const glm::vec2 p = direction.z < 0.0F ? fold(upper) : upper;
-    return pack_snorm16(p.x) | pack_snorm16(p.y) << 16;
+    return pack_octahedral(direction, 16);
 }
 
 glm::vec3 unpack_oct2x16(std::uint32_t packed) {
-    const glm::vec2 p(unpack_snorm16(packed), unpack_snorm16(packed >> 16));
-    const float z = 1.0F - std::abs(p.x) - std::abs(p.y);
-    return glm::normalize(glm::vec3(z < 0.0F ? fold(p) : p, z));
+    return unpack_octahedral(packed, 16);
+}
+
+std::uint32_t pack_oct2x8(const glm::vec3& direction) {
+    return pack_octahedral(direction, 8);
+}
+
+glm::vec3 unpack_oct2x8(std::uint32_t packed) {
+    return unpack_octahedral(packed, 8);
 }
 
 std::vector<glm::vec3> unpack_plane(const Plane& plane) {

@@ -44,6 +44,8 @@ Layout layout_of(PlaneSemantic semantic) {
         return {"residual_colour", {"R", "G", "B"}, OIIO::TypeDesc::HALF};
     case PlaneSemantic::kResidualInverseDepth:
         return {"residual_inverse_depth", {"Y"}, OIIO::TypeDesc::FLOAT};
+    case PlaneSemantic::kTotalLight:
+        return {"total_light", {"R", "G", "B"}, OIIO::TypeDesc::HALF};
     }
     FC_ASSERT(false, "plane semantic is known");
     return {};

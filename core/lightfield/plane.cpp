@@ -12,6 +12,7 @@ std::uint32_t bytes_per_pixel(PlaneFormat format) {
         return 4;
     case PlaneFormat::kRg8:
     case PlaneFormat::kR16:
+    case PlaneFormat::kOct2x8:
         return 2;
     case PlaneFormat::kRgb8:
         return 3;

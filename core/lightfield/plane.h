@@ -19,6 +19,7 @@ enum class PlaneSemantic : std::uint8_t {
     kInverseDepth = 20,         ///< 1 / view depth in units of FrameHeader::inverse_depth_unit; 0 where nothing was hit
     kResidualColour = 21,       ///< as kColour, of ResidualLayer
     kResidualInverseDepth = 22, ///< as kInverseDepth, of ResidualLayer
+    kTotalLight = 30,           ///< illumination that, taken for both kDiffuse and kSpecular, shows the same
 };
 
 /// How one pixel is stored, little-endian. Values are on the wire: never renumber.
@@ -29,7 +30,8 @@ enum class PlaneFormat : std::uint8_t {
     kU32 = 4,
     kRg8 = 5,  ///< 2 bytes, unorm
     kRgb8 = 6, ///< 3 bytes, sRGB
-    kR16 = 20, ///< u16
+    kR16 = 20,   ///< u16
+    kOct2x8 = 30, ///< u16: octahedral x in the low, y in the high 8 bits, snorm
 };
 
 std::uint32_t bytes_per_pixel(PlaneFormat format); ///< 0 for a value that is not a format

@@ -15,9 +15,13 @@ Camera widened_source(const FrameHeader& header, std::size_t index) {
     return with_guard_band(camera, header.guard_band);
 }
 
+bool is_illumination(PlaneSemantic semantic) {
+    return semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular ||
+           semantic == PlaneSemantic::kTotalLight;
+}
+
 std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic) {
-    const bool has_layers = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
-    return static_cast<std::uint32_t>(header.source_positions.size()) * (has_layers ? 1 + header.layer_count : 1);
+    return static_cast<std::uint32_t>(header.source_positions.size()) * (is_illumination(semantic) ? 1 + header.layer_count : 1);
 }
 
 bool is_residual(PlaneSemantic semantic) {

@@ -72,6 +72,9 @@ struct SourceFrame {
 /// Camera of source image `index`, guard band included. All have one size.
 Camera widened_source(const FrameHeader& header, std::size_t index);
 
+/// Whether planes of that meaning hold demodulated light.
+bool is_illumination(PlaneSemantic semantic);
+
 /// Planes are stacks of pages, each of the widened source's size: first what every source sees, source by source, then
 /// (illumination only) the nearest BLEND surface in front of that, source by source, then the next.
 std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic);

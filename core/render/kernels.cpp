@@ -14,6 +14,7 @@
 #include "shaders/keep_holes.spv.h"
 #include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
+#include "shaders/merge_light.spv.h"
 #include "shaders/pack_source.spv.h"
 #include "shaders/reflect_views_bvh.spv.h"
 #include "shaders/reflect_views_rayquery.spv.h"
@@ -70,6 +71,7 @@ const EmbeddedKernel kKernels[] = {
     {KernelId::kKeepHoles, "keep_holes", keep_holes_spv, keep_holes_spv},
     {KernelId::kLimitHistory, "limit_history", limit_history_spv, limit_history_spv},
     {KernelId::kListHoles, "list_holes", list_holes_spv, list_holes_spv},
+    {KernelId::kMergeLight, "merge_light", merge_light_spv, merge_light_spv},
     {KernelId::kPackSource, "pack_source", pack_source_spv, pack_source_spv},
     {KernelId::kReflectViews, "reflect_views", reflect_views_bvh_spv, reflect_views_rayquery_spv},
     {KernelId::kReproject, "reproject", reproject_spv, reproject_spv},

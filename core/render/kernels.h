@@ -19,6 +19,7 @@ enum class KernelId {
     kKeepHoles,
     kLimitHistory,
     kListHoles,
+    kMergeLight,
     kPackSource,
     kReflectViews,
     kReproject,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/source_planes.h"
 
+#include "core/lightfield/normal_precision.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -14,12 +16,33 @@ std::size_t index_of(PlaneSemantic semantic) {
     return static_cast<std::size_t>(found - kSourceSemantics.begin());
 }
 
+bool fits(const Plane& plane, const FrameHeader& header) {
+    const Camera widened = with_guard_band(header.source, header.guard_band);
+    const bool is_coarse_normal = plane.semantic == PlaneSemantic::kNormal && plane.format == PlaneFormat::kOct2x8;
+    const bool is_known = plane.semantic == PlaneSemantic::kTotalLight ||
+                          std::ranges::find(kSourceSemantics, plane.semantic) != kSourceSemantics.end();
+    return is_known && (is_coarse_normal || plane.format == source_format(plane.semantic)) &&
+           plane.width_px == widened.width_px && plane.height_px == plane_height(header, plane.semantic) &&
+           plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
+}
+
+/// Pixels of 16 bits, each in the low half of a word.
+std::vector<std::uint32_t> words_of(const Plane& plane) {
+    std::vector<std::uint32_t> words(plane.bytes.size() / 2);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        words[i] = std::to_integer<std::uint32_t>(plane.bytes[2 * i]) |
+                   std::to_integer<std::uint32_t>(plane.bytes[2 * i + 1]) << 8;
+    }
+    return words;
+}
+
 } // namespace
 
 PlaneFormat source_format(PlaneSemantic semantic) {
     switch (semantic) {
     case PlaneSemantic::kDiffuse:
     case PlaneSemantic::kSpecular:
+    case PlaneSemantic::kTotalLight:
         return PlaneFormat::kR11G11B10F;
     case PlaneSemantic::kDepth:
         return PlaneFormat::kF32;
@@ -75,31 +98,28 @@ SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const 
 }
 
 Decoded<bool> SourcePlanes::upload(const SourceFrame& frame) {
-    const Camera widened = with_guard_band(frame.header.source, frame.header.guard_band);
     for (const Plane& plane : frame.planes) {
-        const bool fits = std::ranges::find(kSourceSemantics, plane.semantic) != kSourceSemantics.end() &&
-                          plane.format == source_format(plane.semantic) && plane.width_px == widened.width_px &&
-                          plane.height_px == plane_height(frame.header, plane.semantic) &&
-                          plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
-        if (!fits) {
+        if (!fits(plane, frame.header)) {
             return decode_error("plane " + std::to_string(static_cast<int>(plane.semantic)) +
                                 ": format or size is not that of the source");
         }
     }
     resize(frame.header);
-    std::vector<std::uint32_t> words;
     for (const Plane& plane : frame.planes) {
-        const gpu::Buffer& buffer = planes_[index_of(plane.semantic)];
-        if (plane.format != PlaneFormat::kRg8) {
-            gpu::write_buffer(device_, buffer, plane.bytes);
+        if (plane.semantic == PlaneSemantic::kTotalLight) {
+            gpu::write_buffer(device_, planes_[index_of(PlaneSemantic::kDiffuse)], plane.bytes);
+            gpu::write_buffer(device_, planes_[index_of(PlaneSemantic::kSpecular)], plane.bytes);
             continue;
         }
-        words.resize(plane.bytes.size() / 2);
-        for (std::size_t i = 0; i < words.size(); ++i) {
-            words[i] = std::to_integer<std::uint32_t>(plane.bytes[2 * i]) |
-                       std::to_integer<std::uint32_t>(plane.bytes[2 * i + 1]) << 8;
+        const gpu::Buffer& buffer = planes_[index_of(plane.semantic)];
+        if (plane.format == PlaneFormat::kRg8) {
+            const std::vector<std::uint32_t> words = words_of(plane);
+            gpu::write_buffer(device_, buffer, std::as_bytes(std::span(words)));
+        } else if (plane.format == PlaneFormat::kOct2x8) {
+            gpu::write_buffer(device_, buffer, fine_normals(plane).bytes);
+        } else {
+            gpu::write_buffer(device_, buffer, plane.bytes);
         }
-        gpu::write_buffer(device_, buffer, std::as_bytes(std::span(words)));
     }
     return true;
 }

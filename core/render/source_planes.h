@@ -31,7 +31,8 @@ public:
     /// Copies planes to the host (the wire's SourceFrame).
     SourceFrame download(std::span<const PlaneSemantic> wanted) const;
 
-    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format.
+    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format. Normals may
+    /// be kOct2x8; kTotalLight becomes both kDiffuse and kSpecular.
     Decoded<bool> upload(const SourceFrame& frame);
 
     const FrameHeader& header() const { return header_; }

@@ -5,6 +5,7 @@
 #include "core/render/frame_parameters.h"
 #include "core/render/illumination_filter.h"
 #include "core/render/kernels.h"
+#include "core/render/light_merger.h"
 #include "core/render/source_surfaces.h"
 
 namespace fieldcast::render {
@@ -54,6 +55,7 @@ struct SourceRenderer::State {
     gpu::Kernel pack;
     gpu::Buffer cameras; ///< current, previous
     gpu::Buffer invalid_samples;
+    std::unique_ptr<LightMerger> merger; ///< null before somebody wants it
     std::vector<Camera> previous; ///< of the sources of the frame before
     FrameHeader last;             ///< header of that frame
     bool is_punctual_apart = false;
@@ -189,6 +191,14 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.has_stored_history = is_filtered && (is_still || header.settings.temporal_accumulation ||
                                            header.settings.denoiser != Denoiser::kNone);
     return s.planes;
+}
+
+Plane SourceRenderer::total_light() {
+    State& s = *state_;
+    if (s.merger == nullptr) {
+        s.merger = std::make_unique<LightMerger>(s.device, s.scene);
+    }
+    return s.merger->merge(s.planes, s.surfaces, s.cameras.address());
 }
 
 std::uint64_t SourceRenderer::invalid_sample_count() const {

@@ -19,6 +19,9 @@ public:
     /// now. The result stays valid until the next call; its header carries the stage times.
     const SourcePlanes& render(const FrameHeader& header);
 
+    /// The illumination of the last frame as one plane, kTotalLight. Blocks.
+    Plane total_light();
+
     /// Samples that were NaN or infinite and were dropped, since construction. Must stay 0.
     std::uint64_t invalid_sample_count() const;
 

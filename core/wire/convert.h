@@ -52,7 +52,10 @@ std::optional<codec::CodecId> from_proto(v1::Codec codec);
 std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic);
 std::optional<PlaneFormat> from_proto(v1::PlaneFormat format);
 
-/// The format in which planes of that meaning are sent.
+/// The format in which planes of that meaning are sent unless another one was agreed on: that of source frames.
 PlaneFormat wire_format(PlaneSemantic semantic);
+
+/// Whether planes of that meaning may be sent in that format.
+bool is_wire_format(PlaneSemantic semantic, PlaneFormat format);
 
 } // namespace fieldcast::wire

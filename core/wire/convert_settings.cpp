@@ -260,13 +260,14 @@ std::optional<codec::CodecId> from_proto(v1::Codec codec) {
 std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic) {
     const bool is_known = (semantic >= v1::PLANE_SEMANTIC_DIFFUSE && semantic <= v1::PLANE_SEMANTIC_COLOUR) ||
                           (semantic >= v1::PLANE_SEMANTIC_INVERSE_DEPTH &&
-                           semantic <= v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH);
+                           semantic <= v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH) ||
+                          semantic == v1::PLANE_SEMANTIC_TOTAL_LIGHT;
     return is_known ? std::optional(static_cast<PlaneSemantic>(semantic)) : std::nullopt;
 }
 
 std::optional<PlaneFormat> from_proto(v1::PlaneFormat format) {
     const bool is_known = (format >= v1::PLANE_FORMAT_R11G11B10F && format <= v1::PLANE_FORMAT_RGB8) ||
-                          format == v1::PLANE_FORMAT_R16;
+                          format == v1::PLANE_FORMAT_R16 || format == v1::PLANE_FORMAT_OCT2X8;
     return is_known ? std::optional(static_cast<PlaneFormat>(format)) : std::nullopt;
 }
 
@@ -274,6 +275,7 @@ PlaneFormat wire_format(PlaneSemantic semantic) {
     switch (semantic) {
     case PlaneSemantic::kDiffuse:
     case PlaneSemantic::kSpecular:
+    case PlaneSemantic::kTotalLight:
         return PlaneFormat::kR11G11B10F;
     case PlaneSemantic::kDepth:
         return PlaneFormat::kF32;
@@ -291,6 +293,11 @@ PlaneFormat wire_format(PlaneSemantic semantic) {
         return PlaneFormat::kR16;
     }
     return PlaneFormat::kRgb8;
+}
+
+bool is_wire_format(PlaneSemantic semantic, PlaneFormat format) {
+    const bool is_coarse_normal = semantic == PlaneSemantic::kNormal && format == PlaneFormat::kOct2x8;
+    return is_coarse_normal || format == wire_format(semantic);
 }
 
 namespace {
@@ -311,11 +318,13 @@ static_assert(same(PlaneSemantic::kDiffuse, v1::PLANE_SEMANTIC_DIFFUSE) &&
               same(PlaneSemantic::kColour, v1::PLANE_SEMANTIC_COLOUR) &&
               same(PlaneSemantic::kInverseDepth, v1::PLANE_SEMANTIC_INVERSE_DEPTH) &&
               same(PlaneSemantic::kResidualColour, v1::PLANE_SEMANTIC_RESIDUAL_COLOUR) &&
-              same(PlaneSemantic::kResidualInverseDepth, v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH));
+              same(PlaneSemantic::kResidualInverseDepth, v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH) &&
+              same(PlaneSemantic::kTotalLight, v1::PLANE_SEMANTIC_TOTAL_LIGHT));
 static_assert(same(PlaneFormat::kR11G11B10F, v1::PLANE_FORMAT_R11G11B10F) &&
               same(PlaneFormat::kF32, v1::PLANE_FORMAT_F32) && same(PlaneFormat::kOct2x16, v1::PLANE_FORMAT_OCT2X16) &&
               same(PlaneFormat::kU32, v1::PLANE_FORMAT_U32) && same(PlaneFormat::kRg8, v1::PLANE_FORMAT_RG8) &&
-              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8) && same(PlaneFormat::kR16, v1::PLANE_FORMAT_R16));
+              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8) && same(PlaneFormat::kR16, v1::PLANE_FORMAT_R16) &&
+              same(PlaneFormat::kOct2x8, v1::PLANE_FORMAT_OCT2X8));
 
 } // namespace
 

@@ -2,9 +2,12 @@
 #include "core/wire/encode.h"
 
 #include "core/codec/crc32c.h"
+#include "core/lightfield/normal_precision.h"
 #include "core/wire/base_view.h"
+#include "core/wire/convert.h"
 
 #include <algorithm>
+#include <deque>
 #include <set>
 
 namespace fieldcast::wire {
@@ -90,6 +93,22 @@ const Plane* find_view(const Views* views, LatticePosition position) {
     return found == views->views.end() ? nullptr : &found->image;
 }
 
+/// Planes that were converted to another format, where they stay while they are encoded.
+class ConvertedPlanes {
+public:
+    /// `plane` in `format`; null if it is null.
+    const Plane* in_format(const Plane* plane, PlaneFormat format) {
+        if (plane == nullptr || plane->format == format) {
+            return plane;
+        }
+        FC_ASSERT(format == PlaneFormat::kOct2x8, "only normals are sent in another format");
+        return &planes_.emplace_back(coarse_normals(*plane));
+    }
+
+private:
+    std::deque<Plane> planes_; // addresses stay
+};
+
 /// Encodes views that others are predicted from, then the others. `jobs` are in the order of `views`.
 void encode_predicted(const Views& views, EncodedViews& encoded, std::vector<Job> jobs, WorkerPool& pool) {
     std::vector<Job> bases;
@@ -111,6 +130,10 @@ void encode_predicted(const Views& views, EncodedViews& encoded, std::vector<Job
 
 } // namespace
 
+PlaneFormat format_of(const PlaneChoice& choice) {
+    return choice.format.value_or(wire_format(choice.semantic));
+}
+
 std::uint64_t EncodedPlane::encoded_bytes() const {
     std::uint64_t sum = 0;
     for (const EncodedStrip& strip : strips) {
@@ -125,7 +148,8 @@ bool EncodedPlane::stands_alone() const {
 
 const EncodedPlane* EncodedSource::find(PlaneChoice choice) const {
     const auto found = std::ranges::find_if(planes, [&](const EncodedPlane& plane) {
-        return plane.semantic == choice.semantic && plane.encoding == choice.encoding;
+        return plane.semantic == choice.semantic && plane.encoding == choice.encoding &&
+               plane.format == format_of(choice);
     });
     return found == planes.end() ? nullptr : &*found;
 }
@@ -138,13 +162,16 @@ EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoic
     source.header = frame.header;
     source.key_frame_id = key.frame_id;
     source.planes.reserve(distinct.size()); // jobs point into it
+    ConvertedPlanes converted;
     std::vector<Job> jobs;
-    for (const PlaneChoice choice : distinct) {
-        const Plane* plane = frame.find(choice.semantic);
+    for (const PlaneChoice& choice : distinct) {
+        const PlaneFormat format = format_of(choice);
+        const Plane* plane = converted.in_format(frame.find(choice.semantic), format);
         FC_ASSERT(plane != nullptr, "a plane was chosen that the frame does not have");
         const bool may_refer = key.source != nullptr && !is_residual(choice.semantic); // other tiles in every frame
         const Plane* reference = may_refer ? key.source->find(choice.semantic) : nullptr;
-        jobs.push_back({plane, fitting(reference, *plane), key.is_optional, frame.header.settings.exposure,
+        jobs.push_back({plane, fitting(converted.in_format(reference, format), *plane), key.is_optional,
+                        frame.header.settings.exposure,
                         &source.planes.emplace_back(without_strips(*plane, choice.encoding))});
     }
     encode_all(jobs, pool);

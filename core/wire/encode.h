@@ -58,9 +58,13 @@ struct KeyFrame {
 struct PlaneChoice {
     PlaneSemantic semantic = PlaneSemantic::kColour;
     codec::Encoding encoding{};
+    std::optional<PlaneFormat> format{}; ///< empty: wire_format(); never names that
 
     auto operator<=>(const PlaneChoice&) const = default;
 };
+
+/// The format in which such planes are sent.
+PlaneFormat format_of(const PlaneChoice& choice);
 
 /// A source frame in every form that some client wants.
 struct EncodedSource {
@@ -72,7 +76,8 @@ struct EncodedSource {
     const EncodedPlane* find(PlaneChoice choice) const; ///< null if absent
 };
 
-/// Encodes the planes named in `choices` (twice named: once encoded). A plane that the frame lacks is our bug.
+/// Encodes the planes named in `choices` (twice named: once encoded), those of another format than the frame's converted
+/// before. A plane that the frame lacks is our bug.
 EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoice> choices, const KeyFrame& key,
                             WorkerPool& pool);
 

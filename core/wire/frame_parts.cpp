@@ -29,7 +29,7 @@ Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader&
     if (!semantic || !format || !codec) {
         return decode_error("header.planes: unknown semantic, format or codec");
     }
-    if (*format != wire_format(*semantic)) {
+    if (!is_wire_format(*semantic, *format)) {
         return decode_error("header.planes: semantic " + std::to_string(message.semantic()) +
                             " is not sent in format " + std::to_string(message.format()));
     }

@@ -111,6 +111,9 @@ SourceFrame FrameRenderer::make_planes(const render::SourcePlanes& source,
         return std::ranges::find(choices, semantic, &wire::PlaneChoice::semantic) != choices.end();
     };
     SourceFrame frame = source.download(source_semantics_of(choices));
+    if (is_wanted(PlaneSemantic::kTotalLight)) {
+        frame.planes.push_back(source_renderer_->total_light());
+    }
     if (is_wanted(PlaneSemantic::kColour) || is_wanted(PlaneSemantic::kInverseDepth)) {
         if (warp_planes_ == nullptr) {
             warp_planes_ = std::make_unique<render::WarpPlanesRenderer>(device_, *gpu_scene_, *grid_renderer_);

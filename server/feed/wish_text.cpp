@@ -27,6 +27,8 @@ const char* word_of(PlaneSemantic semantic) {
         return "residual colour";
     case PlaneSemantic::kResidualInverseDepth:
         return "residual inverse depth";
+    case PlaneSemantic::kTotalLight:
+        return "total light";
     }
     return "unknown";
 }
@@ -39,7 +41,7 @@ std::string text(const PlanesWish& wish) {
     std::string list;
     for (const wire::PlaneChoice& choice : wish.choices) {
         list += (list.empty() ? "planes " : ", ") + std::string(word_of(choice.semantic)) + " " +
-                to_text(choice.encoding);
+                (choice.format == PlaneFormat::kOct2x8 ? "oct2x8 " : "") + to_text(choice.encoding);
     }
     return list;
 }

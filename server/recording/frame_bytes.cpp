@@ -132,7 +132,7 @@ Decoded<void> read_source(const v1::RecordedFrame& message, const feed::Demand& 
         const wire::PlaneChoice& choice = demand.planes[i];
         const v1::FramePlane& entry = message.planes(static_cast<int>(i));
         wire::EncodedPlane plane{.semantic = choice.semantic,
-                                 .format = wire::wire_format(choice.semantic),
+                                 .format = wire::format_of(choice),
                                  .encoding = choice.encoding,
                                  .width_px = entry.width_px(),
                                  .height_px = entry.height_px(),

@@ -25,8 +25,13 @@ bool has_views(const Configuration& granted) {
 std::span<const v1::PlaneSemantic> lossy_planes(const Configuration& granted) {
     static constexpr std::array kViews{v1::PLANE_SEMANTIC_COLOUR};
     static constexpr std::array kSource{v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR};
-    return has_views(granted) ? std::span<const v1::PlaneSemantic>(kViews)
-                              : std::span<const v1::PlaneSemantic>(kSource);
+    static constexpr std::array kTotal{v1::PLANE_SEMANTIC_TOTAL_LIGHT};
+    if (has_views(granted)) {
+        return kViews;
+    }
+    const auto& choices = std::get<feed::PlanesWish>(granted.wish).choices;
+    return choices.front().semantic == PlaneSemantic::kTotalLight ? std::span<const v1::PlaneSemantic>(kTotal)
+                                                                  : std::span<const v1::PlaneSemantic>(kSource);
 }
 
 /// Encoding of the planes that may become lossy.

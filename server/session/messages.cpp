@@ -23,7 +23,7 @@ void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const fee
     for (const wire::PlaneChoice& choice : wish.choices) {
         v1::PlaneHeader& plane = *message.add_planes();
         plane.set_semantic(wire::to_proto(choice.semantic));
-        plane.set_format(wire::to_proto(wire::wire_format(choice.semantic)));
+        plane.set_format(wire::to_proto(wire::format_of(choice)));
         plane.set_codec(wire::to_proto(choice.encoding.codec));
         const glm::uvec2 size = largest_plane(choice.semantic, channel);
         plane.set_width_px(size.x);

@@ -142,12 +142,36 @@ Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::C
     return wire::ViewSet{.grid = *grid, .width_px = size->x, .height_px = size->y, .fovy_rad = *fovy};
 }
 
+/// What is wanted for that plane; null: nothing in particular.
+const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
+                                         [](const v1::CodecPreference& p) { return p.semantic(); });
+    return found == wanted.codecs().end() ? nullptr : &*found;
+}
+
+/// The first format wanted for that plane that it can be sent in; empty: the usual one.
+Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const v1::CodecPreference* const preference = find_preference(wanted, semantic);
+    if (preference == nullptr || preference->formats().empty()) {
+        return std::nullopt;
+    }
+    const PlaneFormat usual = wire::wire_format(semantic);
+    for (const int number : preference->formats()) {
+        const auto format = wire::from_proto(static_cast<v1::PlaneFormat>(number));
+        if (format && wire::is_wire_format(semantic, *format)) {
+            return format == usual ? std::nullopt : format;
+        }
+    }
+    return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
+                  "no format asked for plane " + v1::PlaneSemantic_Name(wire::to_proto(semantic)) +
+                      " is supported; " + v1::PlaneFormat_Name(wire::to_proto(usual)) + " is");
+}
+
 /// The first codec wanted for that plane that we have, at the quality wanted.
 Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemantic semantic,
                                         const feed::ChannelInfo& channel) {
-    const auto preference = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
-                                              [](const v1::CodecPreference& p) { return p.semantic(); });
-    if (preference == wanted.codecs().end() || preference->codecs().empty()) {
+    const v1::CodecPreference* const preference = find_preference(wanted, semantic);
+    if (preference == nullptr || preference->codecs().empty()) {
         return codec::Encoding{};
     }
     if (preference->quality() > codec::kMaxQuality) {
@@ -168,6 +192,9 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
 }
 
 std::vector<PlaneSemantic> scene_planes(const v1::Configure& wanted) {
+    if (wanted.planes() == v1::PLANE_SET_TOTAL_LIGHT) {
+        return {PlaneSemantic::kTotalLight};
+    }
     if (wanted.planes() != v1::PLANE_SET_WITH_G_BUFFER) {
         return {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular};
     }
@@ -201,7 +228,11 @@ Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::Channe
         if (!encoding) {
             return tl::unexpected(encoding.error());
         }
-        wish.choices.push_back({.semantic = semantic, .encoding = *encoding});
+        const auto format = choose_format(wanted, semantic);
+        if (!format) {
+            return tl::unexpected(format.error());
+        }
+        wish.choices.push_back({.semantic = semantic, .encoding = *encoding, .format = *format});
     }
     return wish;
 }

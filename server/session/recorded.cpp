@@ -16,7 +16,13 @@ constexpr std::array kUnasked{v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW}; // what c
 const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
     const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
                                          [](const v1::CodecPreference& p) { return p.semantic(); });
-    return found == wanted.codecs().end() || found->codecs().empty() ? nullptr : &*found;
+    return found == wanted.codecs().end() ? nullptr : &*found;
+}
+
+bool is_format_wanted(const wire::PlaneChoice& recorded, const v1::CodecPreference& preference) {
+    return preference.formats().empty() ||
+           std::ranges::find(preference.formats(), wire::to_proto(wire::format_of(recorded))) !=
+               preference.formats().end();
 }
 
 /// How early the client names that codec; nothing: it does not want it.
@@ -26,7 +32,10 @@ std::optional<std::size_t> rank_of(const wire::PlaneChoice& recorded, const v1::
         return found == codecs.end() ? std::nullopt : std::optional<std::size_t>(found - codecs.begin());
     };
     const v1::CodecPreference* const preference = find_preference(wanted, recorded.semantic);
-    if (preference == nullptr) {
+    if (preference != nullptr && !is_format_wanted(recorded, *preference)) {
+        return std::nullopt;
+    }
+    if (preference == nullptr || preference->codecs().empty()) {
         return place_in(kUnasked);
     }
     const bool has_quality = preference->quality() == 0 || !codec::is_lossy(recorded.encoding.codec) ||
@@ -44,6 +53,8 @@ void ask_for(const wire::PlaneChoice& recorded, v1::Configure& wanted) {
     only.clear_codecs();
     only.add_codecs(wire::to_proto(recorded.encoding.codec));
     only.set_quality(recorded.encoding.quality);
+    only.clear_formats();
+    only.add_formats(wire::to_proto(wire::format_of(recorded)));
 }
 
 wire::PlaneChoice colour_of(const feed::ViewsWish& recorded) {

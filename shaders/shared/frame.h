@@ -112,6 +112,20 @@ struct SourceSurfacesParams {
     uint source_count;
 };
 
+// merge_light.comp: diffuse and specular illumination of the sources as one.
+struct MergeLightParams {
+    CameraBuffer cameras;
+    VisibilityBuffer visibility;
+    VisibilityBuffer layers;
+    UintBuffer diffuse;  // wire planes
+    UintBuffer specular;
+    UintBuffer light;    // out, likewise
+    uint width;
+    uint height;
+    uint page_count;
+    uint source_count;
+};
+
 // What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness | metallic.
 struct GeometryTexel {
     float depth;

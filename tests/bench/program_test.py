@@ -99,7 +99,8 @@ class Program(unittest.TestCase):
         lossless = {(part, coding) for part in parts for coding in ("raw", "zstd", "zstd, key frame")}
         lossy = {(part, f"jpeg {quality}") for part in ("diffuse", "specular", "light", "view") for quality in (30, 90)}
         lossy |= {("view", f"h264 {quality}{alone}") for quality in (30, 90) for alone in ("", " alone")}
-        self.assertEqual(lossless | lossy, set(rows))
+        merged = {("total light", coding) for coding in ("raw", "zstd", "jpeg 30", "jpeg 90")}
+        self.assertEqual(lossless | lossy | merged | {("normal", "zstd, oct2x8")}, set(rows))
         number = lambda part, coding, column: float(rows[part, coding][column])
         for part in ("light", "view"):
             self.assertLess(number(part, "jpeg 30", "bytes"), number(part, "jpeg 90", "bytes"))
@@ -108,6 +109,11 @@ class Program(unittest.TestCase):
             self.assertLess(number(part, "jpeg 90", "ssim"), 1.0)
             self.assertEqual("", rows[part, "zstd"]["ssim"])
         self.assertEqual(0.0, number("light", "jpeg 30", "discard_points"))  # geometry is what discards
+        self.assertTrue(0.98 < number("total light", "zstd", "ssim") < 1.0)  # measured 0.998 on Sponza
+        self.assertEqual(0.0, number("total light", "jpeg 30", "discard_points"))
+        self.assertLess(number("normal", "zstd, oct2x8", "bytes"), number("normal", "zstd", "bytes"))
+        turned = json.loads((self.folder / "codecs.json").read_text())["coarse_normals_deg"]
+        self.assertTrue(0.0 < turned["mean"] < turned["max"] < 1.0, turned)  # core/image/packing.h has the bound
         light = number("diffuse", "zstd", "bytes") + number("specular", "zstd", "bytes")
         self.assertAlmostEqual(light, number("light", "zstd", "bytes"), delta=light * 1e-4)  # the CSV has six digits
         self.expect_user_error(call("codecs", *SIZE, "--frames", 1, "--measured", 2), "--measured")

@@ -78,6 +78,22 @@ TEST(Options, WarpNeedsNoSceneAndHasAResidualLayerUnlessToldOtherwise) {
     EXPECT_EQ(read({"--mode", "warp", "--write", "exr"}).exit_code, 2);
 }
 
+TEST(Options, IlluminationMayBeOnePlane) {
+    const Invocation invocation = read({"--mode", "scene", "--planes", "total-light", "--change", "3s:planes=g-buffer"});
+    ASSERT_TRUE(invocation.options) << invocation.text;
+    EXPECT_EQ(invocation.options->play.wish.planes, client::net::PlaneWish::kTotalLight);
+    EXPECT_EQ(invocation.options->play.changes.at(0).wish.planes, client::net::PlaneWish::kWithGBuffer);
+    const Invocation wrong = read({"--change", "3s:planes=light"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.text, HasSubstr("expected g-buffer, illumination or total-light"));
+}
+
+TEST(Options, NormalsHave16Or8BitsAComponent) {
+    EXPECT_FALSE(read({"--mode", "scene"}).options->play.wish.has_coarse_normals);
+    EXPECT_TRUE(read({"--mode", "scene", "--normal-bits", "8"}).options->play.wish.has_coarse_normals);
+    EXPECT_EQ(read({"--mode", "scene", "--normal-bits", "12"}).exit_code, 2);
+}
+
 TEST(Options, UnsetValuesAreLeftToTheChannel) {
     const Invocation invocation = read({});
     ASSERT_TRUE(invocation.options);

@@ -220,6 +220,56 @@ TEST_F(Negotiate, ChoosesTheFirstCodecThatFitsThePlane) {
     EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_INVALID);
 }
 
+TEST_F(Negotiate, SceneMayHaveOnePlaneOfLight) {
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.set_planes(v1::PLANE_SET_TOTAL_LIGHT);
+    v1::CodecPreference& light = *wanted_.add_codecs();
+    light.set_semantic(v1::PLANE_SEMANTIC_TOTAL_LIGHT);
+    light.add_codecs(v1::CODEC_JPEG);
+    light.set_quality(60);
+    const auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(planes_of(*answer), std::vector{PlaneSemantic::kTotalLight});
+    EXPECT_EQ(feed::to_text(answer->wish), "planes total light jpeg 60");
+    const v1::Configured message = to_message(*answer, 1, 1, 2);
+    EXPECT_EQ(message.planes(0).format(), v1::PLANE_FORMAT_R11G11B10F);
+    EXPECT_EQ(message.planes(0).width_px(), 64U + 2 + 3);
+}
+
+TEST_F(Negotiate, TakesTheFirstFormatThatThePlaneCanHave) {
+    wanted_.add_modes(v1::DELIVERY_MODE_WARP);
+    wanted_.add_warp_planes(v1::WARP_PLANE_NORMAL);
+    EXPECT_EQ(to_message(*ask(), 1, 1, 2).planes(2).format(), v1::PLANE_FORMAT_OCT2X16) << "unless asked";
+    v1::CodecPreference& normal = *wanted_.add_codecs();
+    normal.set_semantic(v1::PLANE_SEMANTIC_NORMAL);
+    normal.add_formats(static_cast<v1::PlaneFormat>(99));
+    normal.add_formats(v1::PLANE_FORMAT_R16);
+    normal.add_formats(v1::PLANE_FORMAT_OCT2X8);
+    normal.add_formats(v1::PLANE_FORMAT_OCT2X16);
+    const auto answer = ask();
+    ASSERT_TRUE(answer.has_value());
+    const wire::PlaneChoice choice = std::get<feed::PlanesWish>(answer->wish).choices[2];
+    EXPECT_EQ(choice.format, PlaneFormat::kOct2x8);
+    EXPECT_EQ(choice.encoding, codec::Encoding{}) << "codecs are another question";
+    EXPECT_EQ(to_message(*answer, 1, 1, 2).planes(2).format(), v1::PLANE_FORMAT_OCT2X8);
+    EXPECT_EQ(feed::to_text(answer->wish), "planes colour zstd, inverse depth zstd, normal oct2x8 zstd");
+    normal.clear_formats();
+    normal.add_formats(v1::PLANE_FORMAT_OCT2X16);
+    EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[2].format, std::nullopt) << "one name for one thing";
+}
+
+TEST_F(Negotiate, RefusesFormatsThatThePlaneNeverHas) {
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
+    v1::CodecPreference& depth = *wanted_.add_codecs();
+    depth.set_semantic(v1::PLANE_SEMANTIC_DEPTH);
+    depth.add_formats(v1::PLANE_FORMAT_OCT2X8);
+    const Refusal answer = refusal();
+    EXPECT_EQ(answer.field, "codecs");
+    EXPECT_EQ(answer.reason, v1::REFUSAL_REASON_UNSUPPORTED);
+    EXPECT_NE(answer.message.find("PLANE_FORMAT_F32 is"), std::string::npos) << answer.message;
+}
+
 TEST_F(Negotiate, RefusesUnknownCodecsAlone) {
     v1::CodecPreference& colour = *wanted_.add_codecs();
     colour.set_semantic(v1::PLANE_SEMANTIC_COLOUR);

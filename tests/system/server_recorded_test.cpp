@@ -104,6 +104,17 @@ TEST_F(Recorded, PlanesCanBeHadWithoutWhatWasNotRecorded) {
     EXPECT_EQ(refusal().field, "planes");
 }
 
+TEST_F(Recorded, FormatsThatWereNotRecordedArePassedOver) {
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    v1::CodecPreference& diffuse = *wanted_.add_codecs();
+    diffuse.set_semantic(v1::PLANE_SEMANTIC_DIFFUSE);
+    diffuse.add_formats(v1::PLANE_FORMAT_OCT2X8);
+    diffuse.add_formats(v1::PLANE_FORMAT_R11G11B10F);
+    EXPECT_TRUE(ask().has_value());
+    diffuse.mutable_formats()->RemoveLast();
+    EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_UNSUPPORTED);
+}
+
 TEST_F(Recorded, ModesAreTriedInTheirOrder) {
     set_grid(4, 4); // not as views, but clients make their own from planes
     wanted_.add_modes(v1::DELIVERY_MODE_VIEWS);

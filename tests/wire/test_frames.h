@@ -34,11 +34,11 @@ inline FrameHeader test_header(std::uint64_t frame_id, std::uint32_t width_px = 
     return header;
 }
 
-/// A source frame with a plane of every format (ids included), ramps with a different seed per frame.
+/// A source frame with a plane of every usual format (ids included), ramps with a different seed per frame.
 inline SourceFrame test_source(std::uint64_t frame_id) {
     SourceFrame frame{test_header(frame_id), {}};
     const Camera widened = with_guard_band(frame.header.source, frame.header.guard_band);
-    for (const PlaneFormat format : kAllFormats) {
+    for (const PlaneFormat format : kUsualFormats) {
         frame.planes.push_back(
             ramp_plane(format, widened.width_px, widened.height_px, static_cast<std::uint32_t>(frame_id)));
     }
@@ -47,7 +47,7 @@ inline SourceFrame test_source(std::uint64_t frame_id) {
 
 inline std::vector<wire::PlaneChoice> all_choices() {
     std::vector<wire::PlaneChoice> choices;
-    for (const PlaneFormat format : kAllFormats) {
+    for (const PlaneFormat format : kUsualFormats) {
         choices.push_back({semantic_of(format), {codec::CodecId::kZstdFiltered}});
     }
     return choices;

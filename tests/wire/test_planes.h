@@ -8,13 +8,16 @@
 #include <cstdint>
 #include <cstring>
 #include <random>
+#include <span>
 #include <string>
 
 namespace fieldcast::testing {
 
 inline constexpr std::array kAllFormats{PlaneFormat::kR11G11B10F, PlaneFormat::kF32, PlaneFormat::kOct2x16,
                                         PlaneFormat::kU32,        PlaneFormat::kRg8, PlaneFormat::kRgb8,
-                                        PlaneFormat::kR16};
+                                        PlaneFormat::kR16,        PlaneFormat::kOct2x8};
+/// One for each meaning: those of source frames.
+inline constexpr std::span kUsualFormats = std::span(kAllFormats).first<kAllFormats.size() - 1>();
 
 inline PlaneSemantic semantic_of(PlaneFormat format) {
     switch (format) {
@@ -23,6 +26,7 @@ inline PlaneSemantic semantic_of(PlaneFormat format) {
     case PlaneFormat::kF32:
         return PlaneSemantic::kDepth;
     case PlaneFormat::kOct2x16:
+    case PlaneFormat::kOct2x8:
         return PlaneSemantic::kNormal;
     case PlaneFormat::kU32:
         return PlaneSemantic::kId;
@@ -52,6 +56,8 @@ inline std::string name_of(PlaneFormat format) {
         return "rgb8";
     case PlaneFormat::kR16:
         return "r16";
+    case PlaneFormat::kOct2x8:
+        return "oct2x8";
     }
     return "";
 }
@@ -117,6 +123,7 @@ inline codec::ByteFilter first_filter(PlaneFormat format) {
         return {Predictor::kNone, Layout::kBytes, false};
     case PlaneFormat::kR11G11B10F:
     case PlaneFormat::kRg8:
+    case PlaneFormat::kOct2x8:
     case PlaneFormat::kRgb8:
         break;
     }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image/packing.h"
 
+#include "core/lightfield/normal_precision.h"
+
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
@@ -93,6 +96,46 @@ TEST(PackOct2x16, EveryWordIsAUnitVector) {
     EXPECT_NEAR(glm::length(unpack_oct2x16(0x80008000U)), 1.0F, 1e-6F) << "−32768 counts as −1";
 }
 
+/// 1° is what the header promises. Half a step of 1/127 in both components is √6 / 254 in the plane of a face, whose
+/// middle is 1/√3 from the centre: √18 / 254 rad = 0.957°.
+TEST(PackOct2x8, AngularErrorStaysBelowTheStatedBound) {
+    std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    double worst_rad = 0.0;
+    for (int i = 0; i < 200000; ++i) {
+        const glm::vec3 direction = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
+        const glm::vec3 read = unpack_oct2x8(pack_oct2x8(direction));
+        ASSERT_NEAR(glm::length(read), 1.0F, 1e-6F);
+        worst_rad = std::max(worst_rad, static_cast<double>(glm::length(read - direction)));
+    }
+    EXPECT_LT(worst_rad * 180.0 / 3.14159265, 1.0);
+    EXPECT_GT(worst_rad * 180.0 / 3.14159265, 0.5) << "8 bits cannot do better";
+}
+
+TEST(PackOct2x8, KeepsAxes) {
+    for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
+                                 glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
+        EXPECT_EQ(unpack_oct2x8(pack_oct2x8(axis)), axis);
+    }
+    EXPECT_EQ(pack_oct2x8({1, 0, 0}), 0x7FU) << "x is in the low bits";
+    EXPECT_NEAR(glm::length(unpack_oct2x8(0x8080U)), 1.0F, 1e-6F) << "−128 counts as −1";
+}
+
+/// What is sent of a normal of 16 bits a component is as good as what is made from the direction itself.
+TEST(CoarseNormals, TurnDirectionsByLessThanTheStatedBound) {
+    std::mt19937 random(3);
+    Plane plane{PlaneSemantic::kNormal, PlaneFormat::kOct2x16, 256, 256, {}};
+    plane.bytes.resize(std::size_t{4} * 256 * 256);
+    std::ranges::generate(plane.bytes, [&] { return static_cast<std::byte>(random()); });
+    const std::vector<glm::vec3> before = unpack_plane(plane);
+    const std::vector<glm::vec3> after = unpack_plane(coarse_normals(plane));
+    const std::vector<glm::vec3> arrived = unpack_plane(fine_normals(coarse_normals(plane)));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        ASSERT_LT(glm::length(after[i] - before[i]), 0.01745F) << i; // 1°
+        ASSERT_LT(glm::length(arrived[i] - after[i]), 0.00007F) << i; // 0.004°, as of OCT2X16
+    }
+}
+
 TEST(UnpackPlane, ReadsEachFormat) {
     const auto plane = [](PlaneFormat format, std::vector<std::uint8_t> bytes) {
         Plane result{PlaneSemantic::kColour, format, 1, 1, {}};
@@ -105,6 +148,7 @@ TEST(UnpackPlane, ReadsEachFormat) {
     EXPECT_EQ(unpack_plane(plane(PlaneFormat::kRgb8, {255, 0, 0})).front(), glm::vec3(1.0F, 0.0F, 0.0F));
     EXPECT_NEAR(unpack_plane(plane(PlaneFormat::kRgb8, {0, 188, 0})).front().y, 0.5029F, 1e-4F);
     EXPECT_EQ(unpack_plane(plane(PlaneFormat::kOct2x16, {0, 0, 0xFF, 0x7F})).front(), glm::vec3(0, 1, 0));
+    EXPECT_EQ(unpack_plane(plane(PlaneFormat::kOct2x8, {0, 0x81})).front(), glm::vec3(0, -1, 0));
     EXPECT_EQ(unpack_plane(plane(PlaneFormat::kR11G11B10F, {0xC0, 0x03, 0, 0})).front(), glm::vec3(1, 0, 0));
     EXPECT_THROW(unpack_plane(plane(PlaneFormat::kU32, {0, 0, 0, 0})), std::logic_error);
     EXPECT_THROW(unpack_plane(plane(PlaneFormat::kF32, {0, 0})), std::logic_error);

@@ -25,6 +25,18 @@ TEST(Plane, UnknownFormatsHaveNoSize) {
     }
 }
 
+TEST(SourceFrame, IlluminationHasPagesOfLayers) {
+    FrameHeader header;
+    header.source.width_px = 8;
+    header.source.height_px = 6;
+    header.layer_count = kMaxLayers;
+    for (const PlaneSemantic semantic :
+         {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kTotalLight}) {
+        EXPECT_EQ(plane_height(header, semantic), 3U * 6) << static_cast<int>(semantic);
+    }
+    EXPECT_EQ(plane_height(header, PlaneSemantic::kNormal), 6U);
+}
+
 TEST(SourceFrame, FindsPlanesByMeaning) {
     SourceFrame frame;
     frame.planes = {{PlaneSemantic::kDepth, PlaneFormat::kF32, 1, 1, {}},
