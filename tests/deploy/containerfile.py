@@ -28,6 +28,12 @@ def stages(text):
     return found
 
 
+def base_image(text, name):
+    """The image that a stage starts from."""
+    starts = [STAGE.match(rest) for word, rest in instructions(text) if word == "FROM"]
+    return next(match.group(1) for match in starts if match and match.group(2) == name)
+
+
 def installed_packages(stage):
     return [package for word, rest in stage if word == "RUN"
             for match in INSTALL.finditer(rest) for package in match.group(2).split()]

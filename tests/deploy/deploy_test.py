@@ -20,6 +20,7 @@ import containerfile
 
 DEPLOY = pathlib.Path("deploy")
 SERVER = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
+PROMTOOL = pathlib.Path(".cache/promtool/promtool")  # see install_promtool.py
 WORST_EXPOSURE = 25  # tenths, as `systemd-analyze security` counts; 0 is best, without hardening it is 96
 
 
@@ -173,13 +174,35 @@ class Configuration(unittest.TestCase):
         self.assertIn('"--config", "/etc/fieldcast/server.toml"', read(DEPLOY / "Containerfile"))
 
 
-class Monitoring(unittest.TestCase):
-    def test_prometheus_accepts_its_files(self):
-        need(self, "promtool")
-        result = run("promtool", "check", "config", str(DEPLOY / "prometheus.yml"))
-        self.assertEqual(0, result.returncode, result.stderr)
-        self.assertIn("rules found", result.stdout)
+class Prometheus(unittest.TestCase):
+    def setUp(self):
+        self.tool = shutil.which("promtool") or str(PROMTOOL)
+        need(self, self.tool)
 
+    def check(self, kind, path):
+        return run(self.tool, "check", kind, str(path))
+
+    def test_accepts_its_files(self):
+        for kind, name in (("config", "prometheus.yml"), ("rules", "alerts.yml")):
+            result = self.check(kind, DEPLOY / name)
+            self.assertEqual(0, result.returncode, result.stderr)
+            self.assertIn(f"{len(self.alerts())} rules found", result.stdout)
+
+    def test_mistakes_would_be_found(self):
+        for right, wrong in (("== 0", "= 0"), ("for: 1m", "for: soon"), ("increase(", "incraese(")):
+            text = read(DEPLOY / "alerts.yml")
+            self.assertIn(right, text)
+            with tempfile.NamedTemporaryFile("w", suffix=".yml") as file:
+                file.write(text.replace(right, wrong))
+                file.flush()
+                self.assertNotEqual(0, self.check("rules", file.name).returncode, wrong)
+
+    @staticmethod
+    def alerts():
+        return re.findall(r"^ +- alert: (\w+)$", read(DEPLOY / "alerts.yml"), re.MULTILINE)
+
+
+class Monitoring(unittest.TestCase):
     def test_panels_have_their_place(self):
         panels = json.loads(read(DEPLOY / "grafana-dashboard.json"))["panels"]
         self.assertEqual(len(panels), len({panel["id"] for panel in panels}))

@@ -78,7 +78,7 @@ add_executable(synthetic_server ${CMAKE_CURRENT_LIST_DIR}/synthetic_server.cpp)
 target_link_libraries(synthetic_server PRIVATE server_synthetic fieldcast_server_service fieldcast_warnings)
 
 # Renders; the tests that need a device skip without one.
-fieldcast_test(server_process_test LABELS gpu TIMEOUT 300
+fieldcast_test(server_process_test LABELS gpu system TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
     DEPENDS fieldcast_proto_grpc fieldcast_wire)
@@ -93,14 +93,14 @@ target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
 add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
 target_link_libraries(running_server PUBLIC test_program http_client fieldcast_proto_grpc PRIVATE GTest::gtest fieldcast_warnings)
 find_package(nlohmann_json REQUIRED)
-fieldcast_test(operation_process_test LABELS gpu TIMEOUT 600
+fieldcast_test(operation_process_test LABELS gpu system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
     DEPENDS certificate_authority running_server nlohmann_json::nlohmann_json)
 add_dependencies(operation_process_test fieldcast-server fieldcast-client)
 target_compile_definitions(operation_process_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
 
-fieldcast_test(change_process_test LABELS gpu TIMEOUT 600
+fieldcast_test(change_process_test LABELS gpu system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/change_process_test.cpp
     DEPENDS running_server nlohmann_json::nlohmann_json)
 add_dependencies(change_process_test fieldcast-server fieldcast-client)
@@ -114,11 +114,12 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
     target_link_libraries(envoy_test PRIVATE certificate_authority http_client test_program server_synthetic
                           fieldcast_server_service fieldcast_warnings GTest::gmock GTest::gtest_main)
     add_dependencies(envoy_test fieldcast-client)
+    add_dependencies(tests_system envoy_test)
     target_compile_definitions(envoy_test PRIVATE FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
     gtest_discover_tests(envoy_test WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
                          PROPERTIES LABELS system TIMEOUT 180 FIXTURES_REQUIRED envoy)
 endif()
-fieldcast_test(channels_process_test LABELS gpu TIMEOUT 600
+fieldcast_test(channels_process_test LABELS gpu system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/channels_process_test.cpp
     DEPENDS running_server nlohmann_json::nlohmann_json)
 add_dependencies(channels_process_test fieldcast-server fieldcast-client)
