@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kUncountedFrames = 2; // buffers for its views, kernels that were not used before
 constexpr double kNewest = 0.2;     // weight of a new frame: a second or so at usual rates
-constexpr double kLeastCorrection = 0.01;
-constexpr double kMostCorrection = 100.0; // a frame that somebody else held up must not shut the door for ever
+constexpr double kLeastCorrection = 0.001;
+constexpr double kMostCorrection = 1000.0; // a frame that somebody else held up must not shut the door for ever
 
 void follow(double& average, double value) {
     average = std::clamp(average + kNewest * (value - average), kLeastCorrection, kMostCorrection);

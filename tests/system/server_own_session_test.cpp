@@ -13,7 +13,7 @@ using Kind = v1::ServerMessage;
 using test::Workshop;
 using testing::HasSubstr;
 
-constexpr feed::Steerer kAnn{.name = "ann", .right = feed::SteeringRight::kSteer};
+const feed::Steerer kAnn{.name = "ann", .right = feed::SteeringRight::kSteer};
 
 class OwnSession : public testing::Test {
 protected:
@@ -83,7 +83,7 @@ TEST_F(OwnSession, EverybodySteersSomethingElse) {
     request(*ann);
     request(*bob); // both at the same time
     steer(*ann, 3.0F);
-    EXPECT_EQ(feed_of(*bob)->steering()->sample(), std::nullopt);
+    EXPECT_FALSE(feed_of(*bob)->steering()->sample().has_value());
     steer(*bob, 5.0F);
     EXPECT_EQ(feed_of(*ann)->steering()->sample()->world_from_camera[3].x, 3.0F);
     EXPECT_EQ(feed_of(*bob)->steering()->sample()->world_from_camera[3].x, 5.0F);
@@ -146,8 +146,7 @@ TEST_F(OwnSession, TheCameraGoesWithTheChannelOrTheSession) {
     configure(*bob, "own");
     ASSERT_TRUE(workshop_.wait_until_living(2));
     EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
-    ASSERT_TRUE(workshop_.wait_until_living(1));
-    EXPECT_TRUE(workshop_.has(feed_of(*bob)));
+    EXPECT_TRUE(workshop_.wait_until_only(feed_of(*bob)));
     bob->end();
     ASSERT_TRUE(workshop_.wait_until_living(0));
 }
@@ -160,9 +159,8 @@ TEST_F(OwnSession, FromOneChannelToTheNext) {
     const auto before = feed_of(*ann);
     EXPECT_EQ(configure(*ann, "other").configured().channel(), "other");
     EXPECT_EQ(next(*ann).steering_released().reason(), v1::STEERING_RELEASE_REASON_RECONFIGURED);
-    ASSERT_TRUE(workshop_.wait_until_begun(2));
-    ASSERT_TRUE(workshop_.wait_until_living(1));
-    EXPECT_FALSE(workshop_.has(before));
+    EXPECT_NE(feed_of(*ann), before);
+    EXPECT_TRUE(workshop_.wait_until_only(feed_of(*ann)));
     request(*ann);
 }
 

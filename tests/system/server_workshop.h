@@ -38,16 +38,16 @@ public:
     bool wait_until_living(int count) {
         return wait([=](const State& state) { return static_cast<int>(state.living.size()) == count; });
     }
+    bool wait_until_only(const std::shared_ptr<feed::Feed>& feed) {
+        return wait([&](const State& state) { return state.living.size() == 1 && state.living.contains(feed.get()); });
+    }
     /// A camera of that feed lives.
     bool has(const std::shared_ptr<feed::Feed>& feed) { return state_.lock()->living.contains(feed.get()); }
 
     /// The frames of all cameras have cost that much.
     void tell_cost(std::chrono::duration<double> used) {
-        std::vector<std::function<void(std::chrono::duration<double>)>> tellers;
-        for (const auto& [feed, tell] : state_.lock()->living) {
-            tellers.push_back(tell);
-        }
-        for (const auto& tell : tellers) {
+        const auto living = state_.lock()->living; // a copy: they ask for locks of their own
+        for (const auto& [feed, tell] : living) {
             tell(used);
         }
     }
