@@ -2,6 +2,7 @@
 #include "server/channel/channel.h"
 
 #include "core/base/log.h"
+#include "core/gpu/recorder.h"
 #include "server/channel/frame_encoder.h"
 
 #include <algorithm>
@@ -25,33 +26,72 @@ void wait_until(Clock::time_point time, const std::stop_token& stop) {
     never.wait_until(lock, stop, time, [] { return false; });
 }
 
-/// Runs a thread's work; a failure ends the channel, not the process.
-template <class Work> void run(feed::Feed& feed, const Work& work) {
+Clock::duration frame_interval(const feed::Feed& feed) {
+    constexpr double kLongest_s = 86'400.0; // what fits a duration whatever was asked
+    const std::chrono::duration<double> seconds(
+        std::min(1.0 / static_cast<double>(feed.frames_per_second()), kLongest_s));
+    return std::chrono::duration_cast<Clock::duration>(seconds);
+}
+
+/// Sleeps until a frame may follow that of `begin`, or until stopped. The rate may change meanwhile.
+void wait_for_next_frame(const feed::Feed& feed, Clock::time_point begin, const std::stop_token& stop) {
+    constexpr std::chrono::milliseconds kLook{100};
+    auto due = begin + frame_interval(feed);
+    while (Clock::now() < due && !stop.stop_requested()) {
+        wait_until(std::min(due, Clock::now() + Clock::duration(kLook)), stop);
+        due = begin + frame_interval(feed);
+    }
+}
+
+/// Whether nothing works on it any more.
+bool is_lost(const gpu::Device& device) {
     try {
-        work();
-    } catch (const std::exception& problem) {
-        log::error("channel failed", {{"channel", feed.info().name}, {"problem", problem.what()}});
-        feed.set_failed();
+        gpu::Recorder recorder(device);
+        recorder.submit();
+        return false;
+    } catch (const std::exception&) {
+        return true;
     }
 }
 
 } // namespace
 
 Channel::Channel(const Shared& shared, const ops::ChannelChoice& choice)
-    : renderer_(shared.device, shared.config, choice), clock_(shared.config, renderer_.scene()),
+    : device_(shared.device), renderer_(shared.device, shared.config, choice), clock_(shared.config, renderer_.scene()),
       feed_(std::make_shared<feed::Feed>(renderer_.info())), metrics_(shared.registry, feed_->info().name),
-      place_(shared.turns),
-      encode_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { encode_loop(stop); }); }),
-      render_thread_([this](const std::stop_token& stop) { run(*feed_, [&] { render_loop(stop); }); }) {}
+      place_(shared.turns), encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
+      render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}
+
+Channel::Channel(const Shared& shared, const SettledChannel& settled, Client client)
+    : device_(shared.device), renderer_(shared.device, shared.config, settled),
+      clock_(shared.config, renderer_.scene(), client.begin), client_(std::move(client)), feed_(client_.feed),
+      metrics_(shared.registry, feed_->info().name), place_(shared.turns),
+      encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
+      render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}
 
 Channel::~Channel() {
     render_thread_.request_stop(); // both, before either is joined: each may wait for the other
     encode_thread_.request_stop();
 }
 
+template <class Work> void Channel::run(const Work& work) {
+    try {
+        work();
+    } catch (const std::exception& problem) {
+        fail(problem.what());
+    }
+}
+
+void Channel::fail(const char* problem) {
+    log::error("channel failed", {{"channel", feed_->info().name}, {"problem", problem}});
+    feed_->set_failed();
+    const auto server = client_.server.lock();
+    if (server != nullptr && is_lost(device_)) {
+        server->set_failed();
+    }
+}
+
 void Channel::render_loop(const std::stop_token& stop) {
-    const auto interval = std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(1.0 / static_cast<double>(feed_->info().frames_per_second)));
     std::uint64_t frame_id = 0;
     std::uint64_t reported_samples = 0;
     while (wait_for_demand(stop)) {
@@ -74,7 +114,7 @@ void Channel::render_loop(const std::stop_token& stop) {
         if (!rendered_.put(std::move(*frame), stop)) {
             return;
         }
-        wait_until(begin + interval, stop);
+        wait_for_next_frame(*feed_, begin, stop);
     }
 }
 
@@ -87,7 +127,11 @@ std::optional<RenderedFrame> Channel::render_in_turn(std::uint64_t frame_id, con
     }
     const auto begin = Clock::now();
     RenderedFrame frame = renderer_.render(frame_id, next_moment(begin), demand);
-    metrics_.observe_turn({.waited = begin - asked, .used = Clock::now() - begin});
+    const auto used = Clock::now() - begin;
+    metrics_.observe_turn({.waited = begin - asked, .used = used});
+    if (client_.used) {
+        client_.used(used);
+    }
     return frame;
 }
 

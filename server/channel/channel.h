@@ -8,6 +8,7 @@
 #include "server/channel/handoff.h"
 #include "server/feed/feed.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -29,11 +30,24 @@ public:
     /// Ready to serve when constructed; rendering starts with the first subscriber. What `shared` refers to must
     /// outlive it. Throws UserError if the scene is not usable.
     Channel(const Shared& shared, const ops::ChannelChoice& choice);
+
+    /// Whose frames and what they cost are for somebody.
+    struct Client {
+        std::shared_ptr<feed::Feed> feed;
+        std::function<void(std::chrono::duration<double>)> used; ///< device time of each frame
+        ChannelClock::TimePoint begin; ///< of the scene's time, the same for all clients of a channel
+        std::weak_ptr<feed::Feed> server; ///< fails as well if the device is lost
+    };
+
+    /// A camera of one client's own; renders into its feed.
+    Channel(const Shared& shared, const SettledChannel& settled, Client client);
     ~Channel();
 
     const std::shared_ptr<feed::Feed>& feed() const { return feed_; }
 
 private:
+    template <class Work> void run(const Work& work); ///< of a thread; a failure ends the channel, not the process
+    void fail(const char* problem);
     void render_loop(const std::stop_token& stop);
     /// Waits for the device. Empty: stopped.
     std::optional<RenderedFrame> render_in_turn(std::uint64_t frame_id, const feed::Demand& demand,
@@ -43,8 +57,10 @@ private:
     void encode_loop(const std::stop_token& stop);
     void log_frame(const RenderedFrame& frame) const;
 
+    const gpu::Device& device_;
     FrameRenderer renderer_;
     ChannelClock clock_;
+    Client client_; ///< of nobody: its functions are empty
     std::shared_ptr<feed::Feed> feed_;
     ChannelMetrics metrics_;
     DevicePlace place_;

@@ -13,14 +13,12 @@ std::int64_t nanoseconds_of(double seconds) {
 
 } // namespace
 
-ChannelClock::ChannelClock(const ops::Config& config, const scene::Scene& scene)
+ChannelClock::ChannelClock(const ops::Config& config, const scene::Scene& scene, std::optional<TimePoint> begin)
     : scene_(scene), mode_(config.clock), fps_(static_cast<double>(config.frames_per_second)),
-      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s) {}
+      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s), begin_(begin) {}
 
 FrameMoment ChannelClock::next(TimePoint now) {
-    if (is_first_) {
-        begin_ = now;
-    }
+    begin_ = begin_.value_or(now);
     const bool has_loop_ended = loop_frames_ > 0 && frame_ == loop_frames_;
     frame_ = has_loop_ended ? 0 : frame_;
     FrameMoment moment;
@@ -43,7 +41,7 @@ std::int64_t ChannelClock::scene_time_ns(TimePoint now) {
         return nanoseconds_of(*fixed_time_s_);
     }
     if (mode_ == ops::ClockMode::kReal) {
-        return std::chrono::duration_cast<std::chrono::nanoseconds>(now - begin_).count();
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(now - *begin_).count();
     }
     return nanoseconds_of(frame_ / fps_);
 }

@@ -19,13 +19,13 @@ struct FrameMoment {
     std::optional<feed::SteeredPose> pose{}; ///< where a client wants the camera
 };
 
-/// Scene time of one channel. Starts at 0 with the first frame.
+/// Scene time of one channel.
 class ChannelClock {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    /// `scene` must outlive it.
-    ChannelClock(const ops::Config& config, const scene::Scene& scene);
+    /// `scene` must outlive it. In real time the scene's time begins at `begin`; without it, with the first frame.
+    ChannelClock(const ops::Config& config, const scene::Scene& scene, std::optional<TimePoint> begin = std::nullopt);
 
     /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over.
     FrameMoment next(TimePoint now);
@@ -44,7 +44,7 @@ private:
     std::uint32_t frame_ = 0; ///< since the start, or since the loop of `loop_frames_` began
     bool is_first_ = true;
     bool has_jumped_ = false;
-    TimePoint begin_{};
+    std::optional<TimePoint> begin_;
     std::int64_t previous_loop_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/scene/bundle.h"
+#include "server/channel/own_channel.h"
 
 #include <algorithm>
 
@@ -40,9 +41,7 @@ void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
 void ChannelList::start_channels(const ops::Config& config, metrics::Registry& registry) {
     for (const ops::ChannelChoice& choice : config.channels) {
         const auto begin = Clock::now();
-        channels_.push_back(std::make_unique<Channel>(
-            Channel::Shared{.device = *device_, .config = config, .turns = turns_, .registry = registry}, choice));
-        add_feed(channels_.back()->feed());
+        start_channel({.device = *device_, .config = config, .turns = turns_, .registry = registry}, choice);
         const feed::ChannelInfo& info = feeds_.back()->info();
         log::info("channel ready", {{"channel", info.name},
                                     {"scene", scene::to_hex(info.scene_hash)},
@@ -52,6 +51,19 @@ void ChannelList::start_channels(const ops::Config& config, metrics::Registry& r
                                     {"spacing_m", info.largest_grid.geometry.spacing_m.x},
                                     {"seconds", seconds_since(begin)}});
     }
+}
+
+void ChannelList::start_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice) {
+    if (choice.control != feed::CameraControl::kOwn) {
+        channels_.push_back(std::make_unique<Channel>(shared, choice));
+        return add_feed(channels_.back()->feed());
+    }
+    if (!own_cameras_) {
+        own_cameras_.emplace(camera::Limits{.max_cameras = shared.config.max_own_cameras,
+                                            .max_ms_per_second = shared.config.own_camera_budget_ms},
+                             shared.registry);
+    }
+    add_feed(open_own_channel(shared, choice, *own_cameras_));
 }
 
 void ChannelList::start_replays(const ops::Config& config, metrics::Registry& registry) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/gpu/device.h"
+#include "server/camera/own_cameras.h"
 #include "server/channel/channel.h"
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
@@ -24,6 +25,7 @@ public:
 
 private:
     void start_channels(const ops::Config& config, metrics::Registry& registry);
+    void start_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice);
     void start_replays(const ops::Config& config, metrics::Registry& registry);
     void start_recorders(const ops::Config& config, metrics::Registry& registry);
     void add_feed(const std::shared_ptr<feed::Feed>& feed);
@@ -31,6 +33,7 @@ private:
     std::optional<gpu::Device> device_;
     DeviceTurns turns_; ///< at the device
     std::vector<std::shared_ptr<feed::Feed>> feeds_;
+    std::optional<camera::OwnCameras> own_cameras_;
     std::vector<std::unique_ptr<Channel>> channels_;
     std::vector<std::unique_ptr<recording::Replay>> replays_;
     std::vector<std::unique_ptr<recording::Recorder>> recorders_; ///< end before what they record

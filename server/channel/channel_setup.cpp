@@ -22,11 +22,26 @@ FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& confi
     warm_up();
 }
 
+FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& config, const SettledChannel& settled)
+    : device_(device), config_(config), scene_(settled.scene), camera_node_(settled.camera_node),
+      fixed_camera_(settled.fixed_camera), settings_(settled.settings), info_(settled.info) {
+    make_renderers(settled.traversal);
+}
+
+SettledChannel FrameRenderer::settled() const {
+    return {.scene = scene_,
+            .camera_node = camera_node_,
+            .traversal = gpu_scene_->traversal(),
+            .fixed_camera = fixed_camera_,
+            .settings = settings_,
+            .info = info_};
+}
+
 void FrameRenderer::load(const ops::ChannelChoice& channel) {
     scene::LoadOptions options;
     options.environment = config_.environment;
     options.sky = config_.sky.value_or(options.sky);
-    scene_ = std::make_unique<scene::Scene>(scene::load_scene(channel.scene, options));
+    scene_ = std::make_shared<const scene::Scene>(scene::load_scene(channel.scene, options));
     for (const std::string& warning : scene_->warnings) {
         log::warn("scene", {{"channel", info_.name}, {"warning", warning}});
     }
@@ -37,7 +52,10 @@ void FrameRenderer::load(const ops::ChannelChoice& channel) {
     }
     info_.scene_hash = scene_->hash;
     info_.bundle = std::make_shared<const std::vector<std::byte>>(scene::make_bundle(channel.scene, options));
-    const scene::Traversal traversal = scene::choose_traversal(device_, config_.traversal);
+    make_renderers(scene::choose_traversal(device_, config_.traversal));
+}
+
+void FrameRenderer::make_renderers(scene::Traversal traversal) {
     gpu_scene_ = std::make_unique<scene::GpuScene>(device_, *scene_, traversal);
     source_renderer_ = std::make_unique<render::SourceRenderer>(device_, *gpu_scene_);
     grid_renderer_ = std::make_unique<render::GridRenderer>(device_, *gpu_scene_);
@@ -75,15 +93,16 @@ void FrameRenderer::limit_views() {
                                .width_px = config_.width_px,
                                .height_px = config_.height_px,
                                .positions = lattice_positions(info_.largest_grid)});
-    info_.max_view_pixels =
-        std::min(info_.max_view_pixels, render::ViewFilter::max_pixels(device_, settings_));
+    const bool is_own = info_.control == feed::CameraControl::kOwn;
+    const std::uint64_t most = render::ViewFilter::max_pixels(device_, settings_);
+    info_.max_view_pixels = std::min(info_.max_view_pixels, is_own ? most / config_.max_own_cameras : most);
 }
 
 void FrameRenderer::settle_guard_band() {
     const auto start_ns = static_cast<std::int64_t>(config_.fixed_time_s.value_or(0.0) * 1e9);
     gpu_scene_->pose(start_ns, true);
     const Camera source = render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
-    if (config_.has_fixed_camera || info_.control == feed::CameraControl::kSteered) {
+    if (config_.has_fixed_camera || is_moved_by_clients(info_.control)) {
         fixed_camera_ = source;
     }
     info_.guard_band = config_.guard_band;

@@ -40,6 +40,16 @@ struct RenderedFrame {
     bool needs_key = false;        ///< as in feed::Demand
 };
 
+/// What a channel settles when it starts: enough for another renderer of the same on the same device.
+struct SettledChannel {
+    std::shared_ptr<const scene::Scene> scene;
+    const scene::CameraNode* camera_node = nullptr; ///< in `scene`
+    scene::Traversal traversal = scene::Traversal::kBvh;
+    std::optional<Camera> fixed_camera; ///< where it stands if it does not follow its node
+    RenderSettings settings;            ///< the exposure too
+    feed::ChannelInfo info;
+};
+
 /// A scene on the device with both renderers, for one channel. Not thread-safe; may be used by one thread after
 /// another.
 class FrameRenderer {
@@ -48,6 +58,11 @@ public:
     /// Throws UserError if the scene is not usable.
     FrameRenderer(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel);
 
+    /// Shares the scene that is loaded, and has everything on the device for itself. `settled` may come from a renderer that
+    /// has gone.
+    FrameRenderer(const gpu::Device& device, const ops::Config& config, const SettledChannel& settled);
+
+    SettledChannel settled() const;
     const feed::ChannelInfo& info() const { return info_; }
     const scene::Scene& scene() const { return *scene_; }
 
@@ -63,6 +78,7 @@ public:
 
 private:
     void load(const ops::ChannelChoice& channel);
+    void make_renderers(scene::Traversal traversal);
     void settle_lattice(const ops::ChannelChoice& choice);
     void limit_views();
     void settle_guard_band();
@@ -75,7 +91,7 @@ private:
 
     const gpu::Device& device_;
     const ops::Config& config_;
-    std::unique_ptr<scene::Scene> scene_; ///< at a fixed address: the renderers refer to it
+    std::shared_ptr<const scene::Scene> scene_; ///< at a fixed address: the renderers refer to it
     const scene::CameraNode* camera_node_ = nullptr;
     std::unique_ptr<scene::GpuScene> gpu_scene_;
     std::unique_ptr<render::SourceRenderer> source_renderer_;

@@ -21,7 +21,13 @@ enum class CameraControl : std::uint8_t {
     kFixed,
     kScripted, ///< the animation of a camera node of the scene
     kSteered,  ///< one client at a time
+    kOwn,      ///< every client has one
 };
+
+/// Its node in the scene says only where it starts.
+inline bool is_moved_by_clients(CameraControl control) {
+    return control == CameraControl::kSteered || control == CameraControl::kOwn;
+}
 
 /// Facts about a channel, fixed when it starts.
 struct ChannelInfo {

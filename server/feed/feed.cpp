@@ -6,6 +6,27 @@
 
 namespace fieldcast::feed {
 
+namespace {
+
+std::shared_ptr<Steering> steering_of(const ChannelInfo& info, bool is_opened_by_each) {
+    switch (info.control) {
+    case CameraControl::kFixed:
+    case CameraControl::kScripted:
+        break;
+    case CameraControl::kSteered:
+        return std::make_shared<Steering>(info.steering_lease);
+    case CameraControl::kOwn:
+        return is_opened_by_each ? nullptr : std::make_shared<Steering>(kOwnCameraLease);
+    }
+    return nullptr;
+}
+
+} // namespace
+
+Feed::Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener)
+    : info_(std::move(info)), opener_(std::move(opener)), steering_(steering_of(info_, opener_ != nullptr)),
+      frames_per_second_(info_.frames_per_second) {}
+
 std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const {
     Demand demand;
     for (const auto& [id, subscriber] : state.subscribers) {
@@ -106,6 +127,9 @@ LatestFrame Feed::latest() {
 }
 
 std::chrono::nanoseconds Feed::waiting_time(std::chrono::steady_clock::time_point now) {
+    if (opener_ != nullptr) {
+        return opener_->waiting_time(now);
+    }
     auto state = state_.lock();
     return state->subscribers.empty() ? std::chrono::nanoseconds(0)
                                       : std::max(now - state->waiting_since, std::chrono::nanoseconds(0));

@@ -4,6 +4,7 @@
 #include "core/base/guarded.h"
 #include "server/feed/channel_info.h"
 #include "server/feed/encoded_frame.h"
+#include "server/feed/feed_opener.h"
 #include "server/feed/steering.h"
 
 #include <atomic>
@@ -31,17 +32,21 @@ struct LatestFrame {
     std::int64_t scene_time_ns = 0;
 };
 
+/// A camera of one's own needs no renewal: longer than any session lasts without a pose.
+inline constexpr std::chrono::hours kOwnCameraLease{24};
+
 class Subscription;
 
 /// All subscribers of one channel, and what they want. Thread-safe.
 class Feed {
 public:
-    explicit Feed(ChannelInfo info)
-        : info_(std::move(info)), steering_(info_.control == CameraControl::kSteered
-                                                ? std::make_shared<Steering>(info_.steering_lease)
-                                                : nullptr) {}
+    /// With an `opener` the feed itself never has frames: whoever wants some opens a feed of its own.
+    explicit Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener = nullptr);
 
     const ChannelInfo& info() const { return info_; }
+
+    /// Null: the feed is for everybody, or for the one who opened it.
+    const std::shared_ptr<FeedOpener>& opener() const { return opener_; }
 
     /// Null: nobody steers the camera of this channel.
     const std::shared_ptr<Steering>& steering() const { return steering_; }
@@ -64,6 +69,10 @@ public:
     }
 
     LatestFrame latest();
+
+    /// How many frames are wanted at most; those of the channel unless somebody says otherwise.
+    float frames_per_second() const { return frames_per_second_; }
+    void set_frames_per_second(float rate) { frames_per_second_ = rate; }
 
     /// How long somebody has been waiting for a frame; 0: nobody is.
     std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now);
@@ -94,7 +103,9 @@ private:
     void remove(std::uint64_t id);
 
     const ChannelInfo info_;
+    const std::shared_ptr<FeedOpener> opener_;
     const std::shared_ptr<Steering> steering_;
+    std::atomic<float> frames_per_second_;
     std::atomic<bool> has_failed_ = false;
     std::condition_variable demand_changed_;
     Guarded<State> state_;

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <sstream>
 
 namespace fieldcast::ops {
@@ -12,19 +14,27 @@ namespace {
 constexpr double kShortestLease_s = 0.5; // several poses on a slow connection
 constexpr double kLongestLease_s = 3600.0;
 
+struct Control {
+    std::string_view word;
+    std::optional<feed::CameraControl> control; ///< unset: as the scene has it
+};
+
+constexpr std::array kControls{Control{"scripted", std::nullopt}, Control{"steered", feed::CameraControl::kSteered},
+                               Control{"own", feed::CameraControl::kOwn}};
+
 /// One --camera-control: for one channel, or for all.
 void read_control(const std::string& entry, Config& config, std::vector<std::string>& problems) {
     const std::size_t equals = entry.rfind('=');
     const std::string word = equals == std::string::npos ? entry : entry.substr(equals + 1);
-    if (word != "scripted" && word != "steered") {
-        problems.push_back("--camera-control " + entry + ": scripted or steered, or NAME= and one of them");
+    const auto known = std::ranges::find(kControls, word, &Control::word);
+    if (known == kControls.end()) {
+        problems.push_back("--camera-control " + entry + ": scripted, steered or own, or NAME= and one of them");
         return;
     }
-    const auto control = word == "steered" ? std::optional(feed::CameraControl::kSteered) : std::nullopt;
     bool is_known = equals == std::string::npos;
     for (ChannelChoice& channel : config.channels) {
         const bool is_meant = equals == std::string::npos || channel.name == entry.substr(0, equals);
-        channel.control = is_meant ? control : channel.control;
+        channel.control = is_meant ? known->control : channel.control;
         is_known = is_known || is_meant;
     }
     if (!is_known) {
@@ -36,8 +46,8 @@ void read_control(const std::string& entry, Config& config, std::vector<std::str
 
 void add_camera_flags(CLI::App& app, FlagText& text) {
     app.add_option("--camera-control", text.camera_controls,
-                   "scripted: the camera node's animation; steered: one client at a time. NAME=CONTROL: of one channel. "
-                   "May be repeated")
+                   "scripted: the camera node's animation; steered: one client at a time; own: every client has one. "
+                   "NAME=CONTROL: of one channel. May be repeated")
         ->group("Scene");
     app.add_option("--steering-lease", text.steering_lease_s,
                    "Seconds without a sign of life after which who steers has to let go")

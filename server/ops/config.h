@@ -51,6 +51,8 @@ struct Config {
     std::string camera;           ///< name of a camera node; empty: "LightField", else the first
     bool has_fixed_camera = false;
     std::chrono::milliseconds steering_lease{5'000}; ///< of steered cameras, without a sign of life of who steers
+    std::uint32_t max_own_cameras = 4;     ///< of clients that have one each, over all channels
+    double own_camera_budget_ms = 1'000.0; ///< of the device per second, for all of them
     std::optional<double> fixed_time_s; ///< freezes the scene at that moment
     ClockMode clock = ClockMode::kReal;
     std::uint32_t loop_frames = 0; ///< ClockMode::kFrames: start again after so many; 0: never

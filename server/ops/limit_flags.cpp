@@ -9,6 +9,7 @@ namespace fieldcast::ops {
 namespace {
 
 constexpr std::uint32_t kMaxCount = 4096;       // of sessions or downloads
+constexpr std::uint32_t kMaxOwnCameras = 256;   // each has two threads and the scene on the device
 constexpr double kMaxRate = 1e6;                // per second
 constexpr std::uint64_t kMaxAmount = 1ULL << 44; // bytes or pixels; sums of a few thousand stay below 2^63
 
@@ -35,6 +36,9 @@ void add_limit_flags(CLI::App& app, Config& config) {
     add("--max-messages-per-second", limits.max_messages_per_second,
         "Of one session on average, twice as many at once; a Configure counts as 50");
     add("--max-poses-per-second", limits.max_poses_per_second, "Of one session that steers, on average; as many at once");
+    add("--max-own-cameras", config.max_own_cameras, "Of clients that have one each, at the same time");
+    add("--own-camera-budget", config.own_camera_budget_ms,
+        "Milliseconds of the device per second that are promised to all own cameras; whoever is alone gets one anyway");
     add("--max-channel-pixels", config.max_channel_pixels, "Of all views of one frame of a channel, over all clients");
     add("--max-pixels-per-peer", limits.max_pixels_per_peer, "Of all views that the server makes for one address");
     add("--max-bytes-in-flight", limits.max_bytes_in_flight, "Unacknowledged, of one session");
@@ -57,6 +61,8 @@ std::vector<std::string> limit_problems(const Config& config) {
     expect_count("--max-sessions-per-peer", limits.max_sessions_per_peer);
     expect_count("--max-scene-downloads", limits.max_scene_downloads);
     expect_count("--max-scene-downloads-per-peer", limits.max_scene_downloads_per_peer);
+    expect(problems, "--max-own-cameras", config.max_own_cameras, 1U, kMaxOwnCameras);
+    expect(problems, "--own-camera-budget", config.own_camera_budget_ms, 1.0, kMaxRate);
     expect_amount("--max-channel-pixels", config.max_channel_pixels);
     expect_amount("--max-pixels-per-peer", limits.max_pixels_per_peer);
     expect_amount("--max-bytes-in-flight", limits.max_bytes_in_flight);

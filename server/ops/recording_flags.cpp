@@ -57,6 +57,13 @@ void check_records(const Config& config, std::vector<std::string>& problems) {
                                (record.channel.empty() ? ": with several channels or none, write NAME=FILE"
                                                        : ": there is no scene's channel '" + record.channel + "'"));
         }
+        const auto recorded = std::ranges::find_if(config.channels, [&](const ChannelChoice& channel) {
+            return record.channel.empty() || channel.name == record.channel;
+        });
+        if (is_known && recorded->control == feed::CameraControl::kOwn) {
+            problems.push_back("--record " + record.file.string() + ": with --camera-control own every client of channel '" +
+                               recorded->name + "' sees something else; record a channel with another camera control");
+        }
         if (!channels.insert(record.channel).second) {
             problems.push_back("--record " + record.file.string() + ": this channel is recorded already");
         }

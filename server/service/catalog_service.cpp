@@ -37,6 +37,8 @@ v1::CameraControl to_proto(feed::CameraControl control) {
         return v1::CAMERA_CONTROL_SCRIPTED;
     case feed::CameraControl::kSteered:
         return v1::CAMERA_CONTROL_STEERED;
+    case feed::CameraControl::kOwn:
+        return v1::CAMERA_CONTROL_OWN;
     }
     return v1::CAMERA_CONTROL_UNSPECIFIED;
 }

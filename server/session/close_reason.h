@@ -19,7 +19,7 @@ enum class CloseReason : std::uint8_t {
     kFlooding,      ///< the client sent too many messages
     kDrained,       ///< the server is going away
     kRevoked,       ///< its token has gone
-    kFailed,        ///< our bug
+    kFailed,        ///< our bug, or the session's own camera failed
 };
 inline constexpr std::size_t kCloseReasonCount = 10;
 inline constexpr std::array<std::string_view, kCloseReasonCount> kCloseReasonNames{

@@ -77,6 +77,7 @@ void Session::end() {
     steering_.leave();
     timings_.end();
     subscription_.end();
+    own_feed_.close();
     pixels_.resize(0);
     bytes_.resize(0);
 }
@@ -142,6 +143,9 @@ void Session::on_tick(TimePoint now) {
         go_away("no acceptable Configure within " + std::to_string(limits_.configure_deadline.count()) + " ms", now,
                 CloseReason::kNotConfigured);
     }
+    if (own_feed_.feed() != nullptr && own_feed_.feed()->has_failed()) {
+        go_away("the camera of this session failed; the log of the server says why", now, CloseReason::kFailed);
+    }
     const auto oldest = credits_.oldest();
     if (oldest && now - *oldest >= limits_.stall_deadline) {
         go_away("a frame was not acknowledged within " + std::to_string(limits_.stall_deadline.count()) + " ms", now,
@@ -192,6 +196,7 @@ v1::ServerMessage Session::depart(TimePoint now) {
     cut_at_ = now + limits_.going_away_deadline;
     steering_.leave();
     subscription_.end();
+    own_feed_.close();
     pixels_.resize(0);
     if (mailbox_.take()) {
         counts_.drops.add(DropReason::kLeaving);

@@ -81,8 +81,9 @@ private:
     void handle(const v1::FrameAck& ack, TimePoint now);
     v1::Configured& begin_epoch(Configuration chosen); ///< the answer, which is queued
     void adapt(TimePoint now);
-    std::optional<Refusal> admit(const Configuration& wanted);
-    std::optional<std::string> subscribe(const Configuration& wanted);
+    std::optional<Refusal> admit(Configuration& wanted); ///< on success its feed is where the frames come from
+    std::optional<Refusal> subscribe(Configuration& wanted);
+    std::optional<Refusal> change_own_feed(Configuration& wanted);
     bool is_too_much(const v1::ClientMessage& message, TimePoint now);
     void drop_old_configuration();
     bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
@@ -124,6 +125,7 @@ private:
     SessionCounts counts_;
     SteeringDesk steering_;
     FrameTimings timings_;
+    feed::OwnFeed own_feed_; ///< none unless it has a camera of its own
     feed::Subscription subscription_; ///< last: ends before what its callback leads to
 };
 

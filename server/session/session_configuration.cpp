@@ -15,6 +15,14 @@ std::uint64_t made_pixels(const Configuration& configuration) {
     return makes_views ? static_cast<std::uint64_t>(set.grid.view_count()) * set.width_px * set.height_px : 0;
 }
 
+feed::CameraLoad load_of(const Configuration& configuration) {
+    return {.frames_per_second = configuration.frames_per_second, .view_pixels = made_pixels(configuration)};
+}
+
+Refusal exhausted(std::string field, std::string message) {
+    return {.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = std::move(field), .message = std::move(message)};
+}
+
 } // namespace
 
 void Session::handle(const v1::Configure& wanted, TimePoint now) {
@@ -43,34 +51,63 @@ v1::Configured& Session::begin_epoch(Configuration chosen) {
     return configured;
 }
 
-std::optional<Refusal> Session::admit(const Configuration& wanted) {
-    const auto exhausted = [](std::string message) {
-        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "grid", .message = std::move(message)};
-    };
+std::optional<Refusal> Session::admit(Configuration& wanted) {
     if (departure_ || cut_at_) {
-        return Refusal{.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = "", .message = "the server is going away"};
+        return exhausted("", "the server is going away");
+    }
+    if (wanted.feed->opener() != nullptr && !steering_.may_steer()) {
+        return Refusal{.reason = v1::REFUSAL_REASON_ROLE_TOO_LOW,
+                       .field = "channel",
+                       .message = "channel '" + wanted.feed->info().name + "' gives every client a camera to steer; that " +
+                                  "needs the role steer"};
     }
     const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
     const std::uint64_t new_pixels = made_pixels(wanted);
     if (!pixels_.resize(std::max(old_pixels, new_pixels))) { // both, until it is known which of them it will be
-        return exhausted(std::to_string(new_pixels) + " pixels in all views asked; with those of the other sessions " +
-                         "of this peer they are more than the " + std::to_string(limits_.max_pixels_per_peer) +
-                         " that one peer may have");
+        return exhausted("grid", std::to_string(new_pixels) + " pixels in all views asked; with those of the other " +
+                                     "sessions of this peer they are more than the " +
+                                     std::to_string(limits_.max_pixels_per_peer) + " that one peer may have");
     }
-    const auto problem = subscribe(wanted);
+    auto problem = subscribe(wanted);
     pixels_.resize(problem ? old_pixels : new_pixels);
-    return problem ? std::optional(exhausted(*problem)) : std::nullopt;
+    return problem;
 }
 
-std::optional<std::string> Session::subscribe(const Configuration& wanted) {
+std::optional<Refusal> Session::subscribe(Configuration& wanted) {
+    feed::OwnFeed opened;
+    if (const auto opener = wanted.feed->opener()) {
+        if (own_feed_.opener() == opener) {
+            return change_own_feed(wanted);
+        }
+        auto own = opener->open(load_of(wanted));
+        if (!own) {
+            return exhausted("channel", std::move(own.error()));
+        }
+        opened = std::move(*own);
+        wanted.feed = opened.feed();
+    }
     if (subscription_.feed() == wanted.feed) {
-        return subscription_.change(wanted.wish);
+        auto problem = subscription_.change(wanted.wish);
+        return problem ? std::optional(exhausted("grid", std::move(*problem))) : std::nullopt;
     }
     auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
     if (!subscription) {
-        return std::move(subscription.error());
+        return exhausted("grid", std::move(subscription.error()));
     }
     subscription_ = std::move(*subscription);
+    own_feed_ = std::move(opened); // the one before closes, after its subscription has ended
+    return std::nullopt;
+}
+
+std::optional<Refusal> Session::change_own_feed(Configuration& wanted) {
+    wanted.feed = own_feed_.feed();
+    if (auto problem = subscription_.change(wanted.wish)) {
+        return exhausted("grid", std::move(*problem));
+    }
+    if (auto problem = own_feed_.change(load_of(wanted))) {
+        subscription_.change(configuration_->wish); // fits: nobody else is there
+        return exhausted("channel", std::move(*problem));
+    }
     return std::nullopt;
 }
 

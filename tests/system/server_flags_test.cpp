@@ -144,9 +144,25 @@ TEST(Flags, SayWhoSteersWhichCamera) {
     EXPECT_EQ(all.config.channels.at(1).control, std::nullopt) << "what is said of one channel wins";
     EXPECT_EQ(all.config.steering_lease, std::chrono::milliseconds(1500));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "c=steered"}).problems, Contains(HasSubstr("no channel")));
-    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems, Contains(HasSubstr("scripted or steered")));
+    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems, Contains(HasSubstr("scripted, steered or own")));
     EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "0.1"}).problems, Contains(HasSubstr("0.5 to 3600")));
     EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "nan"}).problems, Contains(HasSubstr("--steering-lease")));
+}
+
+TEST(Flags, GiveEveryClientACamera) {
+    const Invocation all = read({"--scene", kFile, "--camera-control", "own", "--max-own-cameras", "7", "--own-camera-budget", "250"});
+    EXPECT_THAT(all.problems, IsEmpty());
+    EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kOwn);
+    EXPECT_EQ(all.config.max_own_cameras, 7U);
+    EXPECT_EQ(all.config.own_camera_budget_ms, 250.0);
+    EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems, Contains(HasSubstr("--max-own-cameras 0: 1 to")));
+    EXPECT_THAT(read({"--scene", kFile, "--own-camera-budget", "0"}).problems, Contains(HasSubstr("--own-camera-budget 0: 1 to")));
+    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "own", "--record", "a.fcrec"}).problems,
+                Contains(HasSubstr("--record a.fcrec: with --camera-control own every client")));
+    EXPECT_THAT(read({"--channel", "a=README.md", "--channel", "b=README.md", "--camera-control", "a=own", "--record",
+                      "b=b.fcrec"})
+                    .problems,
+                IsEmpty());
 }
 
 TEST(Flags, RefusesToListenForTheWorld) {

@@ -113,7 +113,10 @@ feed::FramePtr synthetic_frame(const feed::ChannelInfo& info, const feed::Demand
 }
 
 SyntheticChannel::SyntheticChannel(feed::ChannelInfo info)
-    : feed_(std::make_shared<feed::Feed>(std::move(info))),
+    : SyntheticChannel(std::make_shared<feed::Feed>(std::move(info))) {}
+
+SyntheticChannel::SyntheticChannel(std::shared_ptr<feed::Feed> feed)
+    : feed_(std::move(feed)),
       thread_([this](const std::stop_token& stop) { publish_until(stop, *feed_); }) {}
 
 } // namespace fieldcast::test

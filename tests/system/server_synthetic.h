@@ -20,6 +20,7 @@ feed::FramePtr synthetic_frame(const feed::ChannelInfo& info, const feed::Demand
 class SyntheticChannel {
 public:
     explicit SyntheticChannel(feed::ChannelInfo info = synthetic_info());
+    explicit SyntheticChannel(std::shared_ptr<feed::Feed> feed); ///< to a feed that is there
 
     const std::shared_ptr<feed::Feed>& feed() const { return feed_; }
 

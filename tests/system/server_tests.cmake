@@ -13,6 +13,10 @@ fieldcast_test(server_session_test LABELS quick tsan
             ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_timings_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
+fieldcast_test(server_own_camera_test LABELS quick tsan
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_own_camera_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_own_session_test.cpp
+    DEPENDS server_synthetic fieldcast_server_camera fieldcast_server_session)
 fieldcast_test(server_recording_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_golden_recording_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_recorded_test.cpp
@@ -125,3 +129,8 @@ fieldcast_test(channels_process_test LABELS gpu system TIMEOUT 600
 add_dependencies(channels_process_test fieldcast-server fieldcast-client)
 target_compile_definitions(channels_process_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+fieldcast_test(own_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/own_process_test.cpp
+    DEPENDS running_server)
+add_dependencies(own_process_test fieldcast-server)
+target_compile_definitions(own_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/camera/admission.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fieldcast::camera {
+
+namespace {
+
+constexpr int kUncountedFrames = 2; // buffers for its views, kernels that were not used before
+constexpr double kNewest = 0.2;     // weight of a new frame: a second or so at usual rates
+constexpr double kLeastCorrection = 0.001;
+constexpr double kMostCorrection = 1000.0; // a frame that somebody else held up must not shut the door for ever
+
+void follow(double& average, double value) {
+    average = std::clamp(average + kNewest * (value - average), kLeastCorrection, kMostCorrection);
+}
+
+std::string rounded(double number) {
+    return std::to_string(std::llround(number));
+}
+
+} // namespace
+
+void Admission::estimate(const std::string& channel, const FrameCost& cost) {
+    channels_[channel] = {.cost = cost};
+}
+
+std::optional<Rejection> Admission::admit(Id id, const std::string& channel, const feed::CameraLoad& load) {
+    if (cameras_.size() >= limits_.max_cameras) {
+        return Rejection{.shortage = Shortage::kCameras,
+                         .message = "one more camera asked; all " + std::to_string(limits_.max_cameras) +
+                                    " that clients of this server may have are in use"};
+    }
+    const Camera camera{.channel = channel,
+                        .load = load,
+                        .correction = channels_.at(channel).correction,
+                        .uncounted = kUncountedFrames};
+    auto problem = time_problem(id, camera);
+    if (!problem) {
+        cameras_.emplace(id, camera);
+    }
+    return problem;
+}
+
+std::optional<Rejection> Admission::change(Id id, const feed::CameraLoad& load) {
+    Camera changed = cameras_.at(id);
+    if (changed.load == load) {
+        return std::nullopt;
+    }
+    const double before = promise(changed);
+    changed.load = load;
+    changed.uncounted = kUncountedFrames;
+    if (promise(changed) > before) { // less is always allowed
+        if (auto problem = time_problem(id, changed)) {
+            return problem;
+        }
+    }
+    cameras_.at(id) = changed;
+    return std::nullopt;
+}
+
+void Admission::leave(Id id) {
+    cameras_.erase(id);
+}
+
+void Admission::observe(Id id, Seconds used) {
+    const auto found = cameras_.find(id);
+    if (found == cameras_.end()) {
+        return; // its last frame
+    }
+    Camera& camera = found->second;
+    if (camera.uncounted > 0) {
+        --camera.uncounted;
+        return;
+    }
+    Channel& channel = channels_.at(camera.channel);
+    const double estimated_ms = channel.cost.of(camera.load.view_pixels);
+    if (estimated_ms > 0.0) {
+        const double correction = used.count() * 1e3 / estimated_ms;
+        follow(camera.correction, correction);
+        follow(channel.correction, correction);
+    }
+}
+
+std::uint32_t Admission::cameras_of(const std::string& channel) const {
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(cameras_, [&](const auto& entry) { return entry.second.channel == channel; }));
+}
+
+double Admission::promised_ms_per_second(const std::string& channel) const {
+    double sum = 0.0;
+    for (const auto& [id, camera] : cameras_) {
+        sum += camera.channel == channel ? promise(camera) : 0.0;
+    }
+    return sum;
+}
+
+double Admission::promise(const Camera& camera) const {
+    const double frame_ms = channels_.at(camera.channel).cost.of(camera.load.view_pixels) * camera.correction;
+    return frame_ms * static_cast<double>(camera.load.frames_per_second);
+}
+
+std::optional<Rejection> Admission::time_problem(Id except, const Camera& wanted) const {
+    double others = 0.0;
+    bool is_alone = true;
+    for (const auto& [id, camera] : cameras_) {
+        if (id != except) {
+            others += promise(camera);
+            is_alone = false;
+        }
+    }
+    const double asked = promise(wanted);
+    if (is_alone || others + asked <= limits_.max_ms_per_second) {
+        return std::nullopt;
+    }
+    return Rejection{.shortage = Shortage::kTime,
+                     .message = rounded(asked) + " ms of the device per second asked (" +
+                                rounded(static_cast<double>(wanted.load.frames_per_second)) +
+                                " frames per second with " + std::to_string(wanted.load.view_pixels) +
+                                " pixels of views); " + rounded(std::max(limits_.max_ms_per_second - others, 0.0)) +
+                                " of " + rounded(limits_.max_ms_per_second) +
+                                " are left; ask for fewer frames, or fewer or smaller views"};
+}
+
+} // namespace fieldcast::camera

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "server/feed/feed_opener.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+// Who may have a camera of its own, so that those that are there keep what they were promised.
+namespace fieldcast::camera {
+
+/// Of all own cameras of a server together.
+struct Limits {
+    std::uint32_t max_cameras = 4;
+    double max_ms_per_second = 1000.0; ///< of the device
+};
+
+/// What a frame takes of the device, as far as it can be known beforehand.
+struct FrameCost {
+    double source_ms = 0.0;             ///< without views
+    double ms_per_view_megapixel = 0.0; ///< of all its views
+
+    double of(std::uint64_t view_pixels) const {
+        return source_ms + ms_per_view_megapixel * static_cast<double>(view_pixels) * 1e-6;
+    }
+};
+
+enum class Shortage : std::uint8_t { kCameras, kTime };
+
+/// Why somebody does not get what it wants.
+struct Rejection {
+    Shortage shortage = Shortage::kCameras;
+    std::string message; ///< what was asked, and what is left
+};
+
+/// Keeps the promised device time within the limits. A promise is frame rate × time of a frame; that time begins as an
+/// estimate and follows what the frames really take. Whoever is alone always gets what it wants, so that slow devices
+/// serve somebody. Not thread-safe.
+class Admission {
+public:
+    using Id = std::uint64_t;
+    using Seconds = std::chrono::duration<double>;
+
+    explicit Admission(const Limits& limits) : limits_(limits) {}
+
+    /// Of frames of the cameras of `channel`.
+    void estimate(const std::string& channel, const FrameCost& cost);
+
+    /// `id` is new and belongs to `channel`, of which there is an estimate.
+    std::optional<Rejection> admit(Id id, const std::string& channel, const feed::CameraLoad& load);
+
+    /// On rejection, what `id` had before stays.
+    std::optional<Rejection> change(Id id, const feed::CameraLoad& load);
+    void leave(Id id); ///< it may be unknown
+
+    /// A frame of `id` has taken so long. The first ones after a change do not count: they make room for new views.
+    void observe(Id id, Seconds used);
+
+    std::uint32_t cameras_of(const std::string& channel) const;
+    double promised_ms_per_second(const std::string& channel) const;
+
+private:
+    struct Channel {
+        FrameCost cost;
+        double correction = 1.0; ///< real over estimated, of its cameras lately
+    };
+    struct Camera {
+        std::string channel;
+        feed::CameraLoad load;
+        double correction = 1.0; ///< of its own frames
+        int uncounted = 0;       ///< frames still to come that do not count
+    };
+
+    double promise(const Camera& camera) const; ///< ms per second
+    std::optional<Rejection> time_problem(Id except, const Camera& wanted) const;
+
+    const Limits limits_;
+    std::map<std::string, Channel> channels_;
+    std::map<Id, Camera> cameras_;
+};
+
+} // namespace fieldcast::camera

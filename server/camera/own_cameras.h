@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/base/guarded.h"
+#include "server/camera/admission.h"
+#include "server/feed/feed.h"
+#include "server/metrics/registry.h"
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace fieldcast::camera {
+
+/// Where the frames of one camera go, and to whom it tells what they cost.
+struct CameraPlace {
+    std::shared_ptr<feed::Feed> feed;
+    std::function<void(std::chrono::duration<double>)> used; ///< device time of a frame; from any thread
+};
+
+/// Makes frames for `place.feed` until what it returns is destroyed. Both may take seconds; throws if it cannot.
+using MakeCamera = std::function<std::shared_ptr<void>(CameraPlace place)>;
+
+/// The cameras of all clients that have one of their own. One thread makes and ends them, one after the other, so that
+/// clients that come and go cost no more threads or memory than the limits allow: a camera counts until it is gone.
+class OwnCameras {
+public:
+    /// `registry` must outlive it.
+    OwnCameras(const Limits& limits, metrics::Registry& registry);
+
+    /// No feed may be open any more.
+    ~OwnCameras();
+    OwnCameras(const OwnCameras&) = delete;
+    OwnCameras& operator=(const OwnCameras&) = delete;
+
+    /// What a channel needs to let clients have cameras of their own.
+    struct ChannelSetup {
+        feed::ChannelInfo info; ///< also of the feeds that are opened
+        FrameCost cost;         ///< of its frames
+        MakeCamera make;
+    };
+    /// Must not be used after this has gone.
+    std::shared_ptr<feed::FeedOpener> opener(ChannelSetup setup);
+
+private:
+    class Opener;
+    enum class Stage : std::uint8_t { kWaiting, kBeingMade, kMade, kFailed };
+    struct Camera {
+        std::shared_ptr<const ChannelSetup> channel;
+        std::shared_ptr<feed::Feed> feed;
+        std::shared_ptr<void> running; ///< null before it is made
+        Stage stage = Stage::kWaiting;
+        bool is_closed = false;
+    };
+    using Id = Admission::Id;
+    struct State {
+        explicit State(const Limits& limits) : admission(limits) {}
+        Admission admission;
+        std::map<Id, Camera> cameras;
+        std::vector<std::string> channels;
+        Id last_id = 0;
+    };
+
+    tl::expected<Id, Rejection> add(const std::shared_ptr<const ChannelSetup>& channel,
+                                    const std::shared_ptr<feed::Feed>& feed, const feed::CameraLoad& load);
+    std::optional<std::string> change(Id id, const feed::CameraLoad& load);
+    void close(Id id);
+    void observe(Id id, std::chrono::duration<double> used);
+    std::chrono::nanoseconds waiting_time(const ChannelSetup* channel, std::chrono::steady_clock::time_point now);
+
+    void work(const std::stop_token& stop);
+    std::optional<Id> next_job(const std::stop_token& stop); ///< waits; empty: stopped
+    void do_job(Id id);
+    std::shared_ptr<void> make(Id id, const ChannelSetup& channel, const std::shared_ptr<feed::Feed>& feed);
+    void collect(metrics::Page& page);
+    void count_refused(const std::string& channel, Shortage shortage);
+
+    metrics::Registry& registry_;
+    std::condition_variable changed_;
+    Guarded<State> state_;
+    metrics::Collector collector_;
+    std::jthread thread_;
+};
+
+} // namespace fieldcast::camera

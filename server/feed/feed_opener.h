@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <utility>
+
+// Feeds for one client alone: a channel with own cameras opens one for every session that configures it.
+namespace fieldcast::feed {
+
+class Feed;
+class OwnFeed;
+
+/// What somebody wants of a camera of its own.
+struct CameraLoad {
+    float frames_per_second = 0.0F;
+    std::uint64_t view_pixels = 0; ///< of all views of a frame that the server makes
+
+    bool operator==(const CameraLoad&) const = default;
+};
+
+/// Opens feeds of a channel. Thread-safe; nothing here waits for a device.
+class FeedOpener : public std::enable_shared_from_this<FeedOpener> {
+public:
+    virtual ~FeedOpener() = default;
+
+    /// A feed that nobody else sees; its frames begin when its camera is ready. Refused with a reason that says what was
+    /// asked and what is left.
+    virtual tl::expected<OwnFeed, std::string> open(const CameraLoad& load) = 0;
+
+    /// The longest time that the subscriber of an open feed has been waiting for a frame; 0: nobody is.
+    virtual std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now) = 0;
+
+private:
+    friend class OwnFeed;
+    /// Of an open feed. On refusal it stays as it was.
+    virtual std::optional<std::string> change(std::uint64_t id, const CameraLoad& load) = 0;
+    virtual void close(std::uint64_t id) = 0;
+};
+
+/// An open feed; closes when destroyed.
+class OwnFeed {
+public:
+    OwnFeed() = default; ///< none
+    OwnFeed(std::shared_ptr<FeedOpener> opener, std::uint64_t id, std::shared_ptr<Feed> feed)
+        : opener_(std::move(opener)), id_(id), feed_(std::move(feed)) {}
+    OwnFeed(OwnFeed&& other) noexcept
+        : opener_(std::move(other.opener_)), id_(other.id_), feed_(std::move(other.feed_)) {}
+    OwnFeed& operator=(OwnFeed&& other) noexcept {
+        if (this != &other) {
+            close();
+            opener_ = std::move(other.opener_);
+            id_ = other.id_;
+            feed_ = std::move(other.feed_);
+        }
+        return *this;
+    }
+    ~OwnFeed() { close(); }
+
+    const std::shared_ptr<Feed>& feed() const { return feed_; }           ///< null: none
+    const std::shared_ptr<FeedOpener>& opener() const { return opener_; } ///< null: none
+
+    /// Empty: it has what it asked for. Otherwise the reason, and it keeps what it had.
+    std::optional<std::string> change(const CameraLoad& load) { return opener_->change(id_, load); }
+
+    void close() {
+        if (opener_ != nullptr) {
+            opener_->close(id_);
+            opener_.reset();
+            feed_.reset();
+        }
+    }
+
+private:
+    std::shared_ptr<FeedOpener> opener_;
+    std::uint64_t id_ = 0;
+    std::shared_ptr<Feed> feed_;
+};
+
+} // namespace fieldcast::feed
