@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # fieldcast_check_headers(FOLDER …): compiles each header below the folders alone, as part of `all`, with the include
-# paths of the targets of its folder. A header that needs another one included first does not compile.
+# paths of the targets of its folder. A header that needs another one included first does not compile. Left out are
+# headers that a source of the same name includes first: compiling that says the same.
 # Call it after all targets are defined; folders that are not built are left out.
 
 function(fieldcast_check_headers)
@@ -26,11 +27,21 @@ function(_fieldcast_check_folder folder)
 
     set(sources)
     foreach(header ${headers})
+        string(REGEX REPLACE "\\.h$" ".cpp" own_source ${PROJECT_SOURCE_DIR}/${header})
+        if(EXISTS ${own_source})
+            file(STRINGS ${own_source} first_include REGEX "^#include" LIMIT_COUNT 1)
+            if(first_include STREQUAL "#include \"${header}\"")
+                continue()
+            endif()
+        endif()
         set(source ${PROJECT_BINARY_DIR}/headers/${header}.cpp)
         set(content "#include \"${header}\"\n#include \"${header}\"\n") # twice: also checks the guard
         file(CONFIGURE OUTPUT ${source} CONTENT "${content}" @ONLY)
         list(APPEND sources ${source})
     endforeach()
+    if(NOT sources)
+        return()
+    endif()
     cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE name)
     string(REPLACE "/" "_" name fieldcast_headers_${name})
     add_library(${name} OBJECT ${sources})
