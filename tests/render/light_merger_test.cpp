@@ -14,9 +14,9 @@ constexpr std::uint32_t kHeight = 32;
 
 class LightMergerTest : public RenderTest {
 protected:
-    /// A frame of a room, as a client receives it.
-    SourceFrame make_frame(Stage& s) {
-        FrameHeader header = plain_header(room_camera(kWidth, kHeight), 8);
+    /// A frame of `camera`, as a client receives it.
+    SourceFrame make_frame(Stage& s, const Camera& camera = room_camera(kWidth, kHeight)) {
+        FrameHeader header = plain_header(camera, 8);
         header.guard_band = {3, 5, 2, 1};
         header.settings.reflections = false; // they look up light of other pixels
         return s.source.render(header).download(kSourceSemantics);
@@ -42,8 +42,8 @@ protected:
 };
 
 TEST_F(LightMergerTest, TheSourceLooksTheSameFromOnePlane) {
-    Stage s = stage(area_lit_room());
-    SourceFrame frame = make_frame(s);
+    Stage s = stage(cornell_box()); // has diffuse and metallic surfaces
+    SourceFrame frame = make_frame(s, cornell_camera(kHeight));
     const Plane light = s.source.total_light();
     EXPECT_EQ(light.semantic, PlaneSemantic::kTotalLight);
     EXPECT_NE(light.bytes, frame.find(PlaneSemantic::kDiffuse)->bytes);
