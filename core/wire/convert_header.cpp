@@ -30,13 +30,14 @@ Decoded<std::vector<StageTime>> stages_from_proto(const v1::FrameHeader& message
     return stages;
 }
 
-void sources_to_proto(const FrameHeader& header, v1::SourceSet& message) {
-    for (const LatticePosition position : header.source_positions) {
+/// Of sources, or of views that the residual layer is for.
+template <class Message>
+void lattice_to_proto(const std::vector<LatticePosition>& positions, const LatticeGeometry& geometry, Message& message) {
+    for (const LatticePosition position : positions) {
         v1::LatticePosition& entry = *message.add_positions();
         entry.set_row_halves(position.row_halves);
         entry.set_col_halves(position.col_halves);
     }
-    const LatticeGeometry& geometry = header.source_geometry;
     message.set_spacing_x_m(geometry.spacing_m.x);
     message.set_spacing_y_m(geometry.spacing_m.y);
     message.set_convergence_m(std::isinf(geometry.convergence_m) ? 0.0F : geometry.convergence_m);
@@ -91,15 +92,7 @@ Decoded<std::vector<std::uint32_t>> tiles_from_proto(const v1::ResidualLayer& me
 }
 
 void residual_to_proto(const ResidualLayer& residual, v1::ResidualLayer& message) {
-    for (const LatticePosition position : residual.positions) {
-        v1::LatticePosition& entry = *message.add_positions();
-        entry.set_row_halves(position.row_halves);
-        entry.set_col_halves(position.col_halves);
-    }
-    const LatticeGeometry& geometry = residual.geometry;
-    message.set_spacing_x_m(geometry.spacing_m.x);
-    message.set_spacing_y_m(geometry.spacing_m.y);
-    message.set_convergence_m(std::isinf(geometry.convergence_m) ? 0.0F : geometry.convergence_m);
+    lattice_to_proto(residual.positions, residual.geometry, message);
     std::uint32_t next = 0;
     for (const std::uint32_t tile : residual.tiles) {
         message.add_gaps(tile - next);
@@ -194,7 +187,7 @@ void to_proto(const FrameHeader& header, v1::FrameHeader& message) {
     message.set_noise_frame(header.noise_frame);
     to_proto(header.source, *message.mutable_source());
     to_proto(header.guard_band, *message.mutable_guard_band());
-    sources_to_proto(header, *message.mutable_sources());
+    lattice_to_proto(header.source_positions, header.source_geometry, *message.mutable_sources());
     to_proto(header.settings, *message.mutable_settings());
     message.set_layer_count(header.layer_count);
     message.set_still_frames(header.still_frames);

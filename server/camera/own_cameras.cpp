@@ -22,6 +22,10 @@ const char* label_of(Shortage shortage) {
     return "cameras";
 }
 
+std::string refusal_text(const std::string& channel, const Rejection& rejection) {
+    return "channel '" + channel + "' gives every client a camera: " + rejection.message;
+}
+
 std::chrono::duration<double> since(Clock::time_point begin) {
     return Clock::now() - begin;
 }
@@ -39,8 +43,7 @@ public:
         feed->set_frames_per_second(load.frames_per_second);
         const auto id = cameras_.add(setup_, feed, load);
         if (!id) {
-            return tl::unexpected("channel '" + setup_->info.name + "' gives every client a camera: " +
-                                  id.error().message);
+            return tl::unexpected(refusal_text(setup_->info.name, id.error()));
         }
         return feed::OwnFeed(shared_from_this(), *id, std::move(feed));
     }
@@ -73,9 +76,7 @@ OwnCameras::~OwnCameras() {
 
 std::shared_ptr<feed::FeedOpener> OwnCameras::opener(ChannelSetup setup) {
     for (const Shortage shortage : {Shortage::kCameras, Shortage::kTime}) {
-        registry_.counter({"fieldcast_own_cameras_refused_total", "Cameras that a client asked for and did not get, by "
-                                                                  "what was short."},
-                          {{"channel", setup.info.name}, {"reason", label_of(shortage)}});
+        refused(setup.info.name, shortage); // shown from the start, as 0
     }
     {
         auto state = state_.lock();
@@ -99,7 +100,7 @@ tl::expected<OwnCameras::Id, Rejection> OwnCameras::add(const std::shared_ptr<co
         }
     }
     if (problem) {
-        count_refused(channel->info.name, problem->shortage);
+        refused(channel->info.name, problem->shortage).add();
         return tl::unexpected(std::move(*problem));
     }
     changed_.notify_all();
@@ -121,8 +122,8 @@ std::optional<std::string> OwnCameras::change(Id id, const feed::CameraLoad& loa
     if (!problem) {
         return std::nullopt;
     }
-    count_refused(channel, problem->shortage);
-    return "channel '" + channel + "' gives every client a camera: " + problem->message;
+    refused(channel, problem->shortage).add();
+    return refusal_text(channel, *problem);
 }
 
 void OwnCameras::close(Id id) {
@@ -240,12 +241,10 @@ void OwnCameras::collect(metrics::Page& page) {
     }
 }
 
-void OwnCameras::count_refused(const std::string& channel, Shortage shortage) {
-    registry_
-        .counter({"fieldcast_own_cameras_refused_total", "Cameras that a client asked for and did not get, by what was "
-                                                         "short."},
-                 {{"channel", channel}, {"reason", label_of(shortage)}})
-        .add();
+metrics::Counter& OwnCameras::refused(const std::string& channel, Shortage shortage) {
+    return registry_.counter({"fieldcast_own_cameras_refused_total", "Cameras that a client asked for and did not get, by "
+                                                                     "what was short."},
+                             {{"channel", channel}, {"reason", label_of(shortage)}});
 }
 
 } // namespace fieldcast::camera

@@ -78,7 +78,7 @@ private:
     void do_job(Id id);
     std::shared_ptr<void> make(Id id, const ChannelSetup& channel, const std::shared_ptr<feed::Feed>& feed);
     void collect(metrics::Page& page);
-    void count_refused(const std::string& channel, Shortage shortage);
+    metrics::Counter& refused(const std::string& channel, Shortage shortage); ///< counts them
 
     metrics::Registry& registry_;
     std::condition_variable changed_;

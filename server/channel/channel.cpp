@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "core/gpu/recorder.h"
 #include "server/channel/frame_encoder.h"
+#include "server/feed/frame_interval.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -26,20 +27,13 @@ void wait_until(Clock::time_point time, const std::stop_token& stop) {
     never.wait_until(lock, stop, time, [] { return false; });
 }
 
-Clock::duration frame_interval(const feed::Feed& feed) {
-    constexpr double kLongest_s = 86'400.0; // what fits a duration whatever was asked
-    const std::chrono::duration<double> seconds(
-        std::min(1.0 / static_cast<double>(feed.frames_per_second()), kLongest_s));
-    return std::chrono::duration_cast<Clock::duration>(seconds);
-}
-
 /// Sleeps until a frame may follow that of `begin`, or until stopped. The rate may change meanwhile.
 void wait_for_next_frame(const feed::Feed& feed, Clock::time_point begin, const std::stop_token& stop) {
     constexpr std::chrono::milliseconds kLook{100};
-    auto due = begin + frame_interval(feed);
+    auto due = begin + feed::frame_interval(feed.frames_per_second());
     while (Clock::now() < due && !stop.stop_requested()) {
         wait_until(std::min(due, Clock::now() + Clock::duration(kLook)), stop);
-        due = begin + frame_interval(feed);
+        due = begin + feed::frame_interval(feed.frames_per_second());
     }
 }
 

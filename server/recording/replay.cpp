@@ -2,6 +2,7 @@
 #include "server/recording/replay.h"
 
 #include "core/base/log.h"
+#include "server/feed/frame_interval.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -15,12 +16,6 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
 constexpr std::chrono::milliseconds kLongestDelay{500}; ///< after which a replay goes on from now
-constexpr double kLongestInterval_s = 86'400.0;         ///< so that a loop's length fits whatever a file says
-
-nanoseconds interval_of(float frames_per_second) {
-    const double seconds = std::min(1.0 / static_cast<double>(frames_per_second), kLongestInterval_s);
-    return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(seconds));
-}
 
 feed::ChannelInfo info_of(const Recording& recording, const ReplaySetup& setup) {
     feed::ChannelInfo info = recording.info();
@@ -35,7 +30,7 @@ nanoseconds loop_length(const Recording& recording) {
     const nanoseconds shown(frames.back().mark.at_ns);
     const bool has_times = frames.size() > 1 && shown.count() > 0;
     return shown + (has_times ? shown / static_cast<std::int64_t>(frames.size() - 1)
-                              : interval_of(recording.info().frames_per_second));
+                              : feed::frame_interval(recording.info().frames_per_second));
 }
 
 /// Sleeps until `time`; false: stopped.
@@ -63,7 +58,7 @@ Replay::Replay(const ReplaySetup& setup, metrics::Registry& registry)
       damaged_(registry.counter({"fieldcast_replay_damaged_frames_total", "Frames of a recording that cannot be read."},
                                 {{"channel", feed_->info().name}})) {
     if (setup.frames_per_second) {
-        interval_ = interval_of(*setup.frames_per_second);
+        interval_ = feed::frame_interval(*setup.frames_per_second);
         loop_length_ = *interval_ * static_cast<std::int64_t>(recording_.frames().size());
     }
     if (const auto& ignored = recording_.ignored()) {

@@ -142,13 +142,6 @@ Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::C
     return wire::ViewSet{.grid = *grid, .width_px = size->x, .height_px = size->y, .fovy_rad = *fovy};
 }
 
-/// What is wanted for that plane; null: nothing in particular.
-const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
-    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
-                                         [](const v1::CodecPreference& p) { return p.semantic(); });
-    return found == wanted.codecs().end() ? nullptr : &*found;
-}
-
 /// The first format wanted for that plane that it can be sent in; empty: the usual one.
 Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, PlaneSemantic semantic) {
     const v1::CodecPreference* const preference = find_preference(wanted, semantic);
@@ -275,6 +268,12 @@ Chosen<std::uint32_t> choose_chunk_bytes(const v1::Configure& wanted, const Limi
 }
 
 } // namespace
+
+const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
+    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
+                                         [](const v1::CodecPreference& p) { return p.semantic(); });
+    return found == wanted.codecs().end() ? nullptr : &*found;
+}
 
 tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits) {
     const auto channel = choose_channel(asked.channel(), channels);

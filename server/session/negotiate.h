@@ -37,6 +37,9 @@ using Channels = std::span<const std::shared_ptr<feed::Feed>>;
 /// Chooses a configuration, or says what is wrong. Only looks: admission is up to the feed.
 tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits);
 
+/// What is wanted for that plane; null: nothing in particular.
+const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic);
+
 /// `configuration` for the client.
 v1::Configured to_message(const Configuration& configuration, std::uint32_t request_id, std::uint32_t epoch,
                           std::uint32_t credits);

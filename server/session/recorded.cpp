@@ -2,6 +2,7 @@
 #include "server/session/recorded.h"
 
 #include "core/wire/convert.h"
+#include "server/session/negotiate.h"
 
 #include <algorithm>
 #include <array>
@@ -12,12 +13,6 @@ namespace fieldcast::session {
 namespace {
 
 constexpr std::array kUnasked{v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW}; // what clients get that name no codecs
-
-const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
-    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
-                                         [](const v1::CodecPreference& p) { return p.semantic(); });
-    return found == wanted.codecs().end() ? nullptr : &*found;
-}
 
 bool is_format_wanted(const wire::PlaneChoice& recorded, const v1::CodecPreference& preference) {
     return preference.formats().empty() ||

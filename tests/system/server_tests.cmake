@@ -7,6 +7,7 @@ target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fiel
 fieldcast_test(server_session_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_adaptation_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_credits_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
