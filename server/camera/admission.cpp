@@ -27,17 +27,20 @@ void Admission::estimate(const std::string& channel, const FrameCost& cost) {
     channels_[channel] = {.cost = cost};
 }
 
-std::optional<Rejection> Admission::admit(Id id, const std::string& channel, const feed::CameraLoad& load) {
-    if (cameras_.size() >= limits_.max_cameras) {
+std::optional<Rejection> Admission::admit(Id id, const std::string& channel, const feed::CameraLoad& load,
+                                          std::optional<Id> replaced) {
+    const std::size_t leaving = replaced && cameras_.contains(*replaced) ? 1 : 0;
+    if (places() - leaving >= limits_.max_cameras) {
         return Rejection{.shortage = Shortage::kCameras,
                          .message = "one more camera asked; all " + std::to_string(limits_.max_cameras) +
                                     " that clients of this server may have are in use"};
     }
     const Camera camera{.channel = channel,
                         .load = load,
+                        .replaced = replaced,
                         .correction = channels_.at(channel).correction,
                         .uncounted = kUncountedFrames};
-    auto problem = time_problem(id, camera);
+    auto problem = time_problem(id, replaced, camera);
     if (!problem) {
         cameras_.emplace(id, camera);
     }
@@ -53,12 +56,19 @@ std::optional<Rejection> Admission::change(Id id, const feed::CameraLoad& load) 
     changed.load = load;
     changed.uncounted = kUncountedFrames;
     if (promise(changed) > before) { // less is always allowed
-        if (auto problem = time_problem(id, changed)) {
+        if (auto problem = time_problem(id, std::nullopt, changed)) {
             return problem;
         }
     }
     cameras_.at(id) = changed;
     return std::nullopt;
+}
+
+void Admission::stop(Id id) {
+    const auto found = cameras_.find(id);
+    if (found != cameras_.end()) {
+        found->second.load.frames_per_second = 0.0F;
+    }
 }
 
 void Admission::leave(Id id) {
@@ -97,18 +107,24 @@ double Admission::promised_ms_per_second(const std::string& channel) const {
     return sum;
 }
 
+std::size_t Admission::places() const {
+    return static_cast<std::size_t>(std::ranges::count_if(cameras_, [&](const auto& entry) {
+        return !(entry.second.replaced && cameras_.contains(*entry.second.replaced)); // that has the place until it leaves
+    }));
+}
+
 double Admission::promise(const Camera& camera) const {
     const double frame_ms = channels_.at(camera.channel).cost.of(camera.load.view_pixels) * camera.correction;
     return frame_ms * static_cast<double>(camera.load.frames_per_second);
 }
 
-std::optional<Rejection> Admission::time_problem(Id except, const Camera& wanted) const {
+std::optional<Rejection> Admission::time_problem(Id except, std::optional<Id> replaced, const Camera& wanted) const {
     double others = 0.0;
     bool is_alone = true;
     for (const auto& [id, camera] : cameras_) {
-        if (id != except) {
+        if (id != except && id != replaced) {
             others += promise(camera);
-            is_alone = false;
+            is_alone = is_alone && camera.load.frames_per_second == 0.0F; // that one has stopped
         }
     }
     const double asked = promise(wanted);

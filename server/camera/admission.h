@@ -48,11 +48,14 @@ public:
     /// Of frames of the cameras of `channel`.
     void estimate(const std::string& channel, const FrameCost& cost);
 
-    /// `id` is new and belongs to `channel`, of which there is an estimate.
-    std::optional<Rejection> admit(Id id, const std::string& channel, const feed::CameraLoad& load);
+    /// `id` is new and belongs to `channel`, of which there is an estimate. `replaced`, if any, is about to
+    /// leave and does not count.
+    std::optional<Rejection> admit(Id id, const std::string& channel, const feed::CameraLoad& load,
+                                   std::optional<Id> replaced = std::nullopt);
 
     /// On rejection, what `id` had before stays.
     std::optional<Rejection> change(Id id, const feed::CameraLoad& load);
+    void stop(Id id);  ///< it makes no more frames, and keeps its place until it leaves; it may be unknown
     void leave(Id id); ///< it may be unknown
 
     /// A frame of `id` has taken so long. The first ones after a change do not count: they make room for new views.
@@ -69,12 +72,14 @@ private:
     struct Camera {
         std::string channel;
         feed::CameraLoad load;
+        std::optional<Id> replaced = std::nullopt; ///< whose place it takes when that has left
         double correction = 1.0; ///< of its own frames
         int uncounted = 0;       ///< frames still to come that do not count
     };
 
+    std::size_t places() const;                 ///< that are taken
     double promise(const Camera& camera) const; ///< ms per second
-    std::optional<Rejection> time_problem(Id except, const Camera& wanted) const;
+    std::optional<Rejection> time_problem(Id except, std::optional<Id> replaced, const Camera& wanted) const;
 
     const Limits limits_;
     std::map<std::string, Channel> channels_;

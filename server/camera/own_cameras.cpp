@@ -38,10 +38,10 @@ public:
     Opener(OwnCameras& cameras, ChannelSetup setup)
         : cameras_(cameras), setup_(std::make_shared<const ChannelSetup>(std::move(setup))) {}
 
-    tl::expected<feed::OwnFeed, std::string> open(const feed::CameraLoad& load) override {
+    tl::expected<feed::OwnFeed, std::string> open(const feed::CameraLoad& load, const feed::OwnFeed* replaced) override {
         auto feed = std::make_shared<feed::Feed>(setup_->info);
         feed->set_frames_per_second(load.frames_per_second);
-        const auto id = cameras_.add(setup_, feed, load);
+        const auto id = cameras_.add(setup_, feed, load, replaced != nullptr ? std::optional(replaced->id()) : std::nullopt);
         if (!id) {
             return tl::unexpected(refusal_text(setup_->info.name, id.error()));
         }
@@ -88,15 +88,15 @@ std::shared_ptr<feed::FeedOpener> OwnCameras::opener(ChannelSetup setup) {
 
 tl::expected<OwnCameras::Id, Rejection> OwnCameras::add(const std::shared_ptr<const ChannelSetup>& channel,
                                                         const std::shared_ptr<feed::Feed>& feed,
-                                                        const feed::CameraLoad& load) {
+                                                        const feed::CameraLoad& load, std::optional<Id> replaced) {
     std::optional<Rejection> problem;
     Id id = 0;
     {
         auto state = state_.lock();
         id = ++state->last_id;
-        problem = state->admission.admit(id, channel->info.name, load);
+        problem = state->admission.admit(id, channel->info.name, load, replaced);
         if (!problem) {
-            state->cameras.emplace(id, Camera{.channel = channel, .feed = feed, .running = nullptr});
+            state->cameras.emplace(id, Camera{.channel = channel, .feed = feed, .running = nullptr, .after = replaced});
         }
     }
     if (problem) {
@@ -131,13 +131,13 @@ void OwnCameras::close(Id id) {
         auto state = state_.lock();
         Camera& camera = state->cameras.at(id);
         camera.is_closed = true;
+        state->admission.stop(id);
         if (camera.stage == Stage::kWaiting) { // there is nothing to end
             state->admission.leave(id);
             state->cameras.erase(id);
-            return;
         }
     }
-    changed_.notify_all();
+    changed_.notify_all(); // also who is made after it
 }
 
 void OwnCameras::observe(Id id, std::chrono::duration<double> used) {
@@ -173,9 +173,12 @@ std::optional<OwnCameras::Id> OwnCameras::next_job(const std::stop_token& stop) 
         changed_.notify_all();
     });
     const auto is_ended = [](const auto& entry) { return entry.second.is_closed; };
-    const auto is_new = [](const auto& entry) { return entry.second.stage == Stage::kWaiting; };
     std::optional<Id> job;
     state_.lock().wait(changed_, [&](const State& state) {
+        const auto is_new = [&](const auto& entry) {
+            const auto& [id, camera] = entry;
+            return camera.stage == Stage::kWaiting && !(camera.after && state.cameras.contains(*camera.after));
+        };
         auto found = std::ranges::find_if(state.cameras, is_ended); // first: it makes room
         found = found == state.cameras.end() ? std::ranges::find_if(state.cameras, is_new) : found;
         job = found == state.cameras.end() ? std::nullopt : std::optional(found->first);

@@ -49,6 +49,7 @@ public:
 
 private:
     class Opener;
+    using Id = Admission::Id;
     enum class Stage : std::uint8_t { kWaiting, kBeingMade, kMade, kFailed };
     struct Camera {
         std::shared_ptr<const ChannelSetup> channel;
@@ -56,8 +57,8 @@ private:
         std::shared_ptr<void> running; ///< null before it is made
         Stage stage = Stage::kWaiting;
         bool is_closed = false;
+        std::optional<Id> after = std::nullopt; ///< made only when this one is gone
     };
-    using Id = Admission::Id;
     struct State {
         explicit State(const Limits& limits) : admission(limits) {}
         Admission admission;
@@ -67,7 +68,8 @@ private:
     };
 
     tl::expected<Id, Rejection> add(const std::shared_ptr<const ChannelSetup>& channel,
-                                    const std::shared_ptr<feed::Feed>& feed, const feed::CameraLoad& load);
+                                    const std::shared_ptr<feed::Feed>& feed, const feed::CameraLoad& load,
+                                    std::optional<Id> replaced);
     std::optional<std::string> change(Id id, const feed::CameraLoad& load);
     void close(Id id);
     void observe(Id id, std::chrono::duration<double> used);

@@ -29,8 +29,9 @@ public:
     virtual ~FeedOpener() = default;
 
     /// A feed that nobody else sees; its frames begin when its camera is ready. Refused with a reason that says what was
-    /// asked and what is left.
-    virtual tl::expected<OwnFeed, std::string> open(const CameraLoad& load) = 0;
+    /// asked and what is left. `replaced`, if any, is a feed of the same server, of this channel or another, that the
+    /// caller closes once it has the new one: what it takes counts as free, and its camera goes before the new one comes.
+    virtual tl::expected<OwnFeed, std::string> open(const CameraLoad& load, const OwnFeed* replaced = nullptr) = 0;
 
     /// The longest time that the subscriber of an open feed has been waiting for a frame; 0: nobody is.
     virtual std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now) = 0;
@@ -61,6 +62,7 @@ public:
     }
     ~OwnFeed() { close(); }
 
+    std::uint64_t id() const { return id_; }                              ///< among all of a server
     const std::shared_ptr<Feed>& feed() const { return feed_; }           ///< null: none
     const std::shared_ptr<FeedOpener>& opener() const { return opener_; } ///< null: none
 

@@ -37,6 +37,7 @@ void add_limit_flags(CLI::App& app, Config& config) {
         "Of one session on average, twice as many at once; a Configure counts as 50");
     add("--max-poses-per-second", limits.max_poses_per_second, "Of one session that steers, on average; as many at once");
     add("--max-own-cameras", config.max_own_cameras, "Of clients that have one each, at the same time");
+    add("--max-own-cameras-per-peer", limits.max_own_cameras_per_peer, "Of clients of one address");
     add("--own-camera-budget", config.own_camera_budget_ms,
         "Milliseconds of the device per second that are promised to all own cameras; whoever is alone gets one anyway");
     add("--max-channel-pixels", config.max_channel_pixels, "Of all views of one frame of a channel, over all clients");
@@ -62,6 +63,7 @@ std::vector<std::string> limit_problems(const Config& config) {
     expect_count("--max-scene-downloads", limits.max_scene_downloads);
     expect_count("--max-scene-downloads-per-peer", limits.max_scene_downloads_per_peer);
     expect(problems, "--max-own-cameras", config.max_own_cameras, 1U, kMaxOwnCameras);
+    expect(problems, "--max-own-cameras-per-peer", limits.max_own_cameras_per_peer, 1U, kMaxOwnCameras);
     expect(problems, "--own-camera-budget", config.own_camera_budget_ms, 1.0, kMaxRate);
     expect_amount("--max-channel-pixels", config.max_channel_pixels);
     expect_amount("--max-pixels-per-peer", limits.max_pixels_per_peer);

@@ -79,7 +79,8 @@ session::PeerBudgets SessionTable::budgets_of(const State& state, const std::str
         return other->second.budgets;
     }
     return {.bytes = std::make_shared<session::Budget>(limits_.max_bytes_in_flight_per_peer, total_bytes_),
-            .pixels = std::make_shared<session::Budget>(limits_.max_pixels_per_peer)};
+            .pixels = std::make_shared<session::Budget>(limits_.max_pixels_per_peer),
+            .cameras = std::make_shared<session::Budget>(limits_.max_own_cameras_per_peer)};
 }
 
 void SessionTable::add(std::uint64_t id, const std::shared_ptr<Stream>& stream) {

@@ -54,8 +54,9 @@ private:
 
 /// What all sessions of one peer share.
 struct PeerBudgets {
-    std::shared_ptr<Budget> bytes;  ///< in flight; null: no limit
-    std::shared_ptr<Budget> pixels; ///< of views that the server makes; null: no limit
+    std::shared_ptr<Budget> bytes = nullptr;   ///< in flight; null: no limit
+    std::shared_ptr<Budget> pixels = nullptr;  ///< of views that the server makes; null: no limit
+    std::shared_ptr<Budget> cameras = nullptr; ///< of clients that have one each; null: no limit
 };
 
 } // namespace fieldcast::session

@@ -14,6 +14,7 @@ struct Limits {
     double max_opens_per_second_per_peer = 10.0; ///< sessions, on average; max_sessions_per_peer of them at once
     std::uint64_t max_view_set_pixels = 72ULL * 1280 * 720;     ///< rows · columns · width · height of one session
     std::uint64_t max_pixels_per_peer = 4 * 72ULL * 1280 * 720; ///< the same, over the sessions of one peer
+    std::uint32_t max_own_cameras_per_peer = 4;                 ///< over the sessions of one peer
     std::uint64_t max_bytes_in_flight = 256ULL << 20;           ///< of one session
     std::uint64_t max_bytes_in_flight_per_peer = 1024ULL << 20; ///< over the sessions of one peer
     std::uint64_t max_bytes_in_flight_in_total = 4096ULL << 20; ///< over all sessions

@@ -30,6 +30,7 @@ Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits
                  TimePoint now, const PeerBudgets& budgets, feed::Steerer steerer)
     : channels_(std::move(channels)), limits_(limits), on_frame_(std::move(on_frame)),
       credits_(1.0, limits.max_bytes_in_flight), bytes_(budgets.bytes), pixels_(budgets.pixels),
+      cameras_(budgets.cameras),
       messages_({.per_second = limits.max_messages_per_second, .burst = 2.0 * limits.max_messages_per_second}),
       next_heartbeat_(now + limits.heartbeat_interval),
       configure_by_(now + limits.configure_deadline),
@@ -76,10 +77,15 @@ bool Session::is_too_much(const v1::ClientMessage& message, TimePoint now) {
 void Session::end() {
     steering_.leave();
     timings_.end();
+    close_feeds();
+    bytes_.resize(0);
+}
+
+void Session::close_feeds() {
     subscription_.end();
     own_feed_.close();
+    cameras_.resize(0);
     pixels_.resize(0);
-    bytes_.resize(0);
 }
 
 void Session::handle(const v1::FrameAck& ack, TimePoint now) {
@@ -195,9 +201,7 @@ v1::ServerMessage Session::depart(TimePoint now) {
     departure_.reset();
     cut_at_ = now + limits_.going_away_deadline;
     steering_.leave();
-    subscription_.end();
-    own_feed_.close();
-    pixels_.resize(0);
+    close_feeds();
     if (mailbox_.take()) {
         counts_.drops.add(DropReason::kLeaving);
     }

@@ -83,7 +83,10 @@ private:
     void adapt(TimePoint now);
     std::optional<Refusal> admit(Configuration& wanted); ///< on success its feed is where the frames come from
     std::optional<Refusal> subscribe(Configuration& wanted);
+    tl::expected<feed::OwnFeed, Refusal> open_own_feed(const Configuration& wanted);
+    void count_camera(); ///< among those of its peer
     std::optional<Refusal> change_own_feed(Configuration& wanted);
+    void close_feeds(); ///< no frames from now on
     bool is_too_much(const v1::ClientMessage& message, TimePoint now);
     void drop_old_configuration();
     bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
@@ -107,8 +110,9 @@ private:
     std::uint32_t request_id_ = 0; ///< of the Configure that was granted last
     Adapter adapter_;
     Credits credits_;
-    Share bytes_;  ///< in flight
-    Share pixels_; ///< of the views that the server makes for it
+    Share bytes_;   ///< in flight
+    Share pixels_;  ///< of the views that the server makes for it
+    Share cameras_; ///< 1 while it has one of its own
     RateLimit messages_;
     bool is_flooded_ = false;
     bool lacks_budget_ = false; ///< the frame in the mailbox has to wait for bytes of others

@@ -79,9 +79,9 @@ std::optional<Refusal> Session::subscribe(Configuration& wanted) {
         if (own_feed_.opener() == opener) {
             return change_own_feed(wanted);
         }
-        auto own = opener->open(load_of(wanted));
+        auto own = open_own_feed(wanted);
         if (!own) {
-            return exhausted("channel", std::move(own.error()));
+            return std::move(own.error());
         }
         opened = std::move(*own);
         wanted.feed = opened.feed();
@@ -92,11 +92,32 @@ std::optional<Refusal> Session::subscribe(Configuration& wanted) {
     }
     auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
     if (!subscription) {
+        count_camera();
         return exhausted("grid", std::move(subscription.error()));
     }
     subscription_ = std::move(*subscription);
     own_feed_ = std::move(opened); // the one before closes, after its subscription has ended
+    count_camera();
     return std::nullopt;
+}
+
+void Session::count_camera() {
+    cameras_.resize(own_feed_.feed() != nullptr ? 1 : 0);
+}
+
+tl::expected<feed::OwnFeed, Refusal> Session::open_own_feed(const Configuration& wanted) {
+    if (!cameras_.resize(1)) {
+        return tl::unexpected(exhausted("channel", "channel '" + wanted.feed->info().name +
+                                                       "' gives every client a camera, and all " +
+                                                       std::to_string(limits_.max_own_cameras_per_peer) +
+                                                       " that one peer may have are in use by its other sessions"));
+    }
+    auto own = wanted.feed->opener()->open(load_of(wanted), own_feed_.feed() != nullptr ? &own_feed_ : nullptr);
+    if (!own) {
+        count_camera();
+        return tl::unexpected(exhausted("channel", std::move(own.error())));
+    }
+    return std::move(*own);
 }
 
 std::optional<Refusal> Session::change_own_feed(Configuration& wanted) {

@@ -156,6 +156,9 @@ TEST(Flags, GiveEveryClientACamera) {
     EXPECT_EQ(all.config.max_own_cameras, 7U);
     EXPECT_EQ(all.config.own_camera_budget_ms, 250.0);
     EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems, Contains(HasSubstr("--max-own-cameras 0: 1 to")));
+    EXPECT_EQ(read({"--scene", kFile, "--max-own-cameras-per-peer", "2"}).config.limits.max_own_cameras_per_peer, 2U);
+    EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras-per-peer", "0"}).problems,
+                Contains(HasSubstr("--max-own-cameras-per-peer 0: 1 to")));
     EXPECT_THAT(read({"--scene", kFile, "--own-camera-budget", "0"}).problems, Contains(HasSubstr("--own-camera-budget 0: 1 to")));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "own", "--record", "a.fcrec"}).problems,
                 Contains(HasSubstr("--record a.fcrec: with --camera-control own every client")));

@@ -19,7 +19,7 @@ class OwnSession : public testing::Test {
 protected:
     std::unique_ptr<Session> open(const feed::Steerer& steerer = kAnn) {
         return std::make_unique<Session>(std::vector{own_, other_, fixed_}, Limits{}, [](const feed::FramePtr&) {}, now_,
-                                         PeerBudgets{}, steerer);
+                                         PeerBudgets{.cameras = peer_cameras_}, steerer);
     }
 
     /// The next message that is no heartbeat, or one of no kind.
@@ -65,6 +65,7 @@ protected:
     static const std::shared_ptr<feed::Feed>& feed_of(const Session& session) { return session.configuration()->feed; }
 
     TimePoint now_ = std::chrono::steady_clock::now(); // as for who leaves a camera
+    std::shared_ptr<Budget> peer_cameras_; ///< null: no limit
     metrics::Registry registry_;
     Workshop workshop_;
     camera::OwnCameras cameras_{{.max_cameras = 2, .max_ms_per_second = 100.0}, registry_};
@@ -162,6 +163,44 @@ TEST_F(OwnSession, FromOneChannelToTheNext) {
     EXPECT_NE(feed_of(*ann), before);
     EXPECT_TRUE(workshop_.wait_until_only(feed_of(*ann)));
     request(*ann);
+}
+
+TEST_F(OwnSession, FromOneChannelToTheNextWhenEverythingIsTaken) {
+    const auto ann = open();
+    const auto bob = open();
+    configure(*ann, "own", 50.0F); // 50 of 100 ms per second
+    configure(*bob, "own", 45.0F);
+    ASSERT_TRUE(workshop_.wait_until_living(2));
+    const auto of_bob = feed_of(*bob);
+    EXPECT_EQ(configure(*bob, "other", 60.0F).message_case(), Kind::kRefused) << "more than it gives back";
+    EXPECT_EQ(feed_of(*bob), of_bob);
+    EXPECT_EQ(configure(*bob, "other", 45.0F).configured().channel(), "other");
+    EXPECT_EQ(configure(*ann, "other", 50.0F).configured().channel(), "other");
+    const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
+    while (!(workshop_.has(feed_of(*ann)) && workshop_.has(feed_of(*bob))) && std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::yield();
+    }
+    EXPECT_TRUE(workshop_.wait_until_living(2));
+    EXPECT_EQ(workshop_.most_living(), 2) << "memory of the device never held three";
+}
+
+TEST_F(OwnSession, APeerHasNoMoreThanItsShare) {
+    peer_cameras_ = std::make_shared<Budget>(Limits{}.max_own_cameras_per_peer);
+    peer_cameras_->take(Limits{}.max_own_cameras_per_peer - 1); // its other sessions
+    const auto ann = open();
+    const auto bob = open();
+    EXPECT_EQ(configure(*ann, "own").message_case(), Kind::kConfigured);
+    EXPECT_EQ(configure(*ann, "other").message_case(), Kind::kConfigured) << "one at a time";
+    const v1::ServerMessage refused = configure(*bob, "own");
+    EXPECT_EQ(refused.refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
+    EXPECT_THAT(refused.refused().message(), HasSubstr("all 4 that one peer may have"));
+    EXPECT_EQ(configure(*bob, "fixed").message_case(), Kind::kConfigured);
+    EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
+    EXPECT_EQ(configure(*bob, "own").message_case(), Kind::kConfigured) << "ann gave hers back";
+    EXPECT_EQ(configure(*bob, "other", 1000.0F).message_case(), Kind::kConfigured) << "whoever is alone";
+    EXPECT_EQ(configure(*ann, "own").message_case(), Kind::kRefused);
+    bob->end();
+    EXPECT_EQ(peer_cameras_->used(), Limits{}.max_own_cameras_per_peer - 1U);
 }
 
 TEST_F(OwnSession, WhoIsSentAwayLosesItsCameraAtOnce) {

@@ -31,6 +31,7 @@ public:
     void fail_from_now_on() { state_.lock()->fails = true; }
 
     int begun() { return state_.lock()->begun; }
+    int most_living() { return state_.lock()->most_living; } ///< at the same time
     int living() { return static_cast<int>(state_.lock()->living.size()); }
     bool wait_until_begun(int count) {
         return wait([=](const State& state) { return state.begun >= count; });
@@ -59,6 +60,7 @@ private:
         bool is_shut = false;
         bool fails = false;
         int begun = 0;
+        int most_living = 0;
         std::map<const feed::Feed*, std::function<void(std::chrono::duration<double>)>> living;
         std::set<std::thread::id> threads;
     };
@@ -88,6 +90,7 @@ private:
                 throw std::runtime_error("the workshop is out of memory");
             }
             state->living.emplace(place.feed.get(), std::move(place.used));
+            state->most_living = std::max(state->most_living, static_cast<int>(state->living.size()));
         }
         changed_.notify_all();
         return std::shared_ptr<Camera>(new Camera{*this, std::make_unique<SyntheticChannel>(place.feed)});
