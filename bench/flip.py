@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Adds FLIP to a result of `fieldcast-bench quality --out FOLDER`, and checks its RMSE and SSIM with scikit-image.
+"""Adds FLIP to a result of `fieldcast-bench quality|warp --out FOLDER`, and checks its RMSE and SSIM with scikit-image.
 
 FLIP is a difference between images as people alternate between them: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström,
 Fairchild. FLIP: A Difference Evaluator for Alternating Images. HPG 2020. 0 is no difference, 1 the largest. The viewer is
@@ -41,6 +41,26 @@ def display(linear, exposure):
     """clamp(exposure * linear, 0, 1) through the sRGB curve (IEC 61966-2-1), as the program shows pictures."""
     x = numpy.clip(linear.astype(numpy.float64) * exposure, 0.0, 1.0)
     return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * numpy.power(x, 1.0 / 2.4) - 0.055)
+
+
+def read_png(path):
+    """Display-referred, 0 to 1, height x width x 3, double precision."""
+    from skimage import io as files
+
+    return files.imread(str(path))[..., :3] / 255.0
+
+
+def shown(folder, name, result):
+    """The picture as a display shows it: pictures of `quality` are linear, those of `warp` are what a client shows."""
+    if "exposure" in result:
+        return display(read_exr(folder / f"{name}.exr"), result["exposure"])
+    return read_png(folder / f"{name}.png")
+
+
+def rows_by_input(result):
+    """Rows of `quality` have their inputs' names, those of `warp` a mode and a coding."""
+    rows = result["rows"]
+    return rows if isinstance(rows, dict) else {f"{row['mode']} {row['coding']}": row for row in rows}
 
 
 def rmse(image, reference):
@@ -102,8 +122,8 @@ def evaluate(folder, result):
     for done, picture in enumerate(result["pictures"], 1):
         name = picture["reference"]
         if name not in references:
-            references[name] = display(read_exr(folder / f"{name}.exr"), result["exposure"])
-        image = display(read_exr(folder / f"{picture['file']}.exr"), result["exposure"])
+            references[name] = shown(folder, name, result)
+        image = shown(folder, picture["file"], result)
         found += disagreements(picture, image, references[name])
         picture["flip"] = flip(image, references[name])
         show_progress(done, len(result["pictures"]), began)
@@ -111,19 +131,23 @@ def evaluate(folder, result):
 
 
 def add_means(result):
-    """Adds "flip" to every row of the table: the mean over its pictures."""
-    for name, row in result["rows"].items():
-        row["flip"] = float(numpy.mean([p["flip"] for p in result["pictures"] if p["input"] == name]))
+    """Adds "flip" to every row of the table that has pictures: the mean over them."""
+    for name, row in rows_by_input(result).items():
+        errors = [picture["flip"] for picture in result["pictures"] if picture["input"] == name]
+        if errors:
+            row["flip"] = float(numpy.mean(errors))
 
 
 def fill_csv(text, result):
     """The table with its flip column filled in lines of this result: those of the same command, scene and input."""
     table = list(csv.DictReader(io.StringIO(text)))
     if not table or "flip" not in table[0]:
-        raise ValueError("no column flip: expected a table of `fieldcast-bench quality --csv`")
+        raise ValueError("no column flip: expected a table of `fieldcast-bench quality|warp --csv`")
+    rows = rows_by_input(result)
     for line in table:
-        if line["command"] == result["command"] and line["scene"] == result["scene"] and line["input"] in result["rows"]:
-            line["flip"] = f"{result['rows'][line['input']]['flip']:.6g}"
+        row = rows.get(line["input"] if "input" in line else f"{line['mode']} {line['coding']}", {})
+        if line["command"] == result["command"] and line["scene"] == result["scene"] and "flip" in row:
+            line["flip"] = f"{row['flip']:.6g}"
     out = io.StringIO()
     writer = csv.DictWriter(out, table[0].keys(), lineterminator="\n")
     writer.writeheader()
@@ -132,17 +156,19 @@ def fill_csv(text, result):
 
 
 def print_table(rows):
-    print(f"{'input':<14}{'RMSE':>10}{'SSIM':>10}{'FLIP':>10}")
+    print(f"{'input':<26}{'RMSE':>10}{'SSIM':>10}{'FLIP':>10}")
     for name, row in rows.items():
-        print(f"{name:<14}{row['rmse']:>10.4f}{row['ssim']:>10.4f}{row['flip']:>10.4f}")
+        if "flip" in row:
+            print(f"{name:<26}{row['rmse']:>10.4f}{row['ssim']:>10.4f}{row['flip']:>10.4f}")
 
 
 def run(arguments):
-    file = arguments.folder / "quality.json"
+    files = [arguments.folder / name for name in ("quality.json", "warp.json")]
+    file = next((file for file in files if file.exists()), files[0])
     result = json.loads(file.read_text(encoding="utf-8"))
     problems = evaluate(arguments.folder, result)
     add_means(result)
-    print_table(result["rows"])
+    print_table(rows_by_input(result))
     replace_file(file, json.dumps(result, indent=2, ensure_ascii=False) + "\n")
     if arguments.csv:
         replace_file(arguments.csv, fill_csv(arguments.csv.read_text(encoding="utf-8"), result))
@@ -156,13 +182,13 @@ def run(arguments):
 
 def main():
     parser = argparse.ArgumentParser(prog="./fieldcast bench flip", description=__doc__.split("\n\n")[0],
-                                     epilog="Writes the numbers into FOLDER/quality.json.")
-    parser.add_argument("folder", type=pathlib.Path, help="what `quality --out FOLDER` wrote")
-    parser.add_argument("--csv", type=pathlib.Path, help="also fill the flip column of this table of `quality --csv`")
+                                     epilog="Writes the numbers into FOLDER/quality.json or FOLDER/warp.json.")
+    parser.add_argument("folder", type=pathlib.Path, help="what `quality --out FOLDER` or `warp --out FOLDER` wrote")
+    parser.add_argument("--csv", type=pathlib.Path, help="also fill the flip column of this table of `--csv`")
     try:
         return run(parser.parse_args())
     except (OSError, ValueError, KeyError) as error:
-        print(f"./fieldcast bench flip: {error}: expected a folder that `quality --out` wrote", file=sys.stderr)
+        print(f"./fieldcast bench flip: {error}: expected a folder that `quality --out` or `warp --out` wrote", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("\ninterrupted: nothing was written", file=sys.stderr)

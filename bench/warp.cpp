@@ -76,10 +76,13 @@ void run_warp(const WarpOptions& options) {
     if (!options.json.empty()) {
         write_json(options.json, json);
     }
+    if (!settings.out.empty()) {
+        write_json((settings.out / "warp.json").string(), json);
+    }
     if (!options.csv.empty()) {
         write_csv(options.csv,
                   {"machine", "commit", "command", "scene", "size", "mode", "coding", "bytes", "ssim", "worst_ssim",
-                   "rmse", "residual_percent", "extended_percent", "ms_per_view"},
+                   "rmse", "flip", "residual_percent", "extended_percent", "ms_per_view"},
                   csv_rows(json));
     }
 }
@@ -100,7 +103,8 @@ void add_warp_command(CLI::App& app) {
         ->delimiter(',')
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    command->add_option("--out", options->settings.out, "write the views to this folder");
+    command->add_option("--out", options->settings.out,
+                        "write the views to this folder, and warp.json, for `./fieldcast bench flip`");
     command->add_option("--device", options->device, "part of the Vulkan device's name");
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write one line per row to this file");

@@ -58,6 +58,12 @@ double percent(double count, const Views& views) {
     return 100.0 * count / pixels;
 }
 
+constexpr const char* kFinished = "finished"; // pictures of what the server makes
+
+std::string numbered(const std::string& stem, std::size_t i) {
+    return stem + "_" + std::to_string(i);
+}
+
 const Coding kLossless{"zstd", {codec::CodecId::kZstdFiltered, 0}};
 
 } // namespace
@@ -107,7 +113,7 @@ void WarpRun::measure() {
         codings.push_back(
             {"jpeg " + std::to_string(quality), {codec::CodecId::kJpeg, static_cast<std::uint8_t>(quality)}});
     }
-    write_pictures("finished", finished);
+    write_pictures(kFinished, finished);
     measure_scene(frame);
     SourceFrame without_residual = frame;
     without_residual.header.residual = {};
@@ -128,8 +134,7 @@ void WarpRun::measure_views(const Views& finished, const Coding& coding) {
     }
     const double of_grid = scene_.grid().view_count() / static_cast<double>(finished.views.size());
     Json row{{"mode", "views"}, {"coding", coding.name}, {"bytes", bytes * of_grid}};
-    compare(decoded, finished, row);
-    result_["rows"].push_back(row);
+    add_row(std::move(row), decoded, finished);
 }
 
 // Clients with the scene make the same views, to the last bit; `codecs` has what lossy light does to them.
@@ -171,43 +176,54 @@ void WarpRun::measure_warp(const SourceFrame& frame, const Views& finished, cons
         residual += counts.residual;
         extended += counts.extended();
     }
-    const std::string mode = has_residual ? "warp" : "warp, no residual";
-    Json row{{"mode", mode}, {"coding", coding.name}, {"bytes", bytes}};
-    compare(made, finished, row);
-    row["residual_percent"] = percent(residual, made);
-    row["extended_percent"] = percent(extended, made);
-    row["ms_per_view"] = ms / static_cast<double>(made.views.size());
-    result_["rows"].push_back(row);
-    write_pictures(mode + " " + coding.name, made);
+    add_row({{"mode", has_residual ? "warp" : "warp, no residual"},
+             {"coding", coding.name},
+             {"bytes", bytes},
+             {"residual_percent", percent(residual, made)},
+             {"extended_percent", percent(extended, made)},
+             {"ms_per_view", ms / static_cast<double>(made.views.size())}},
+            made, finished);
 }
 
-void WarpRun::compare(const Views& made, const Views& finished, Json& row) const {
+void WarpRun::add_row(Json row, const Views& made, const Views& finished) {
+    const std::string input = row["mode"].get<std::string>() + " " + row["coding"].get<std::string>();
+    std::string stem = input;
+    std::erase(stem, ',');
+    std::ranges::replace(stem, ' ', '_');
+    write_pictures(stem, made);
     double ssim = 0.0;
     double rmse = 0.0;
     double worst = 1.0;
     for (std::size_t i = 0; i < made.views.size(); ++i) {
         const image::RgbF32 ours = image::display_image(made.views[i].image);
         const image::RgbF32 theirs = image::display_image(finished.views[i].image);
-        const double of_view = image::ssim(ours, theirs);
-        ssim += of_view;
-        worst = std::min(worst, of_view);
-        rmse += image::rmse(ours, theirs);
+        const double ssim_of_view = image::ssim(ours, theirs);
+        const double rmse_of_view = image::rmse(ours, theirs);
+        ssim += ssim_of_view;
+        worst = std::min(worst, ssim_of_view);
+        rmse += rmse_of_view;
+        if (!settings_.out.empty()) {
+            result_["pictures"].push_back({{"file", numbered(stem, i)},
+                                           {"reference", numbered(kFinished, i)},
+                                           {"input", input},
+                                           {"rmse", rmse_of_view},
+                                           {"ssim", ssim_of_view}});
+        }
     }
     const auto count = static_cast<double>(made.views.size());
     row["ssim"] = ssim / count;
     row["worst_ssim"] = worst;
     row["rmse"] = rmse / count;
+    result_["rows"].push_back(std::move(row));
 }
 
-void WarpRun::write_pictures(const std::string& name, const Views& views) const {
+void WarpRun::write_pictures(const std::string& stem, const Views& views) const {
     if (settings_.out.empty()) {
         return;
     }
     std::filesystem::create_directories(settings_.out);
-    std::string stem = name;
-    std::ranges::replace(stem, ' ', '_');
     for (std::size_t i = 0; i < views.views.size(); ++i) {
-        image::write_png(settings_.out / (stem + "_" + std::to_string(i) + ".png"), views.views[i].image);
+        image::write_png(settings_.out / (numbered(stem, i) + ".png"), views.views[i].image);
     }
 }
 

@@ -28,7 +28,8 @@ public:
     /// source_size, guard_band_share, view_count, inverse_depth_unit, tiles, plane_bytes (each plane, lossless) and
     /// `rows`: mode, coding, bytes (of all views of the grid, or of all planes), ssim and rmse (mean over the views made,
     /// against the finished ones), worst_ssim, residual_percent, extended_percent (of the pixels of the views made),
-    /// ms_per_view.
+    /// ms_per_view. With a folder for pictures also `pictures`: file, reference (both without ".png"), input (mode and
+    /// coding), rmse and ssim.
     nlohmann::ordered_json result() const { return result_; }
 
 private:
@@ -36,8 +37,8 @@ private:
     void measure_views(const Views& finished, const Coding& coding);
     void measure_scene(const SourceFrame& frame);
     void measure_warp(const SourceFrame& frame, const Views& finished, const Coding& coding);
-    void compare(const Views& made, const Views& finished, nlohmann::ordered_json& row) const;
-    void write_pictures(const std::string& name, const Views& views) const;
+    void add_row(nlohmann::ordered_json row, const Views& made, const Views& finished);
+    void write_pictures(const std::string& stem, const Views& views) const;
 
     LightFieldScene& scene_;
     WarpSettings settings_;

@@ -118,6 +118,22 @@ class Program(unittest.TestCase):
         self.assertAlmostEqual(light, number("light", "zstd", "bytes"), delta=light * 1e-4)  # the CSV has six digits
         self.expect_user_error(call("codecs", *SIZE, "--frames", 1, "--measured", 2), "--measured")
 
+    def test_warp(self):
+        out = self.folder / "warp"
+        done = call("warp", *SIZE, "--grid", "3x3", "--frames", 1, "--qualities", "75", "--out", out, "--csv",
+                    self.folder / "warp.csv")
+        self.assertEqual(0, done.returncode, done.stderr)
+        result = json.loads((out / "warp.json").read_text())
+        inputs = [f"{row['mode']} {row['coding']}" for row in result["rows"]]
+        self.assertEqual(["scene zstd", "views zstd", "warp zstd", "warp, no residual zstd", "views jpeg 75", "warp jpeg 75",
+                          "warp, no residual jpeg 75"], inputs)
+        for picture in result["pictures"]:
+            self.assertIn(picture["input"], inputs[1:])
+            for name in (picture["file"], picture["reference"]):
+                self.assertTrue((out / f"{name}.png").exists(), name)
+        self.assertEqual(result["view_count"] * 6, len(result["pictures"]))
+        self.assertEqual([""] * 7, [row["flip"] for row in self.table("warp.csv")])
+
     def test_quality_with_everything(self):
         out = self.folder / "out"
         done = call("quality", *self.references, "--presets", "ours", "--temporal", "--light-field", "--out", out,

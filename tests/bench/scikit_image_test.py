@@ -101,6 +101,15 @@ class Tables(unittest.TestCase):
         expected = text.replace("bench a,Hall,ours,", "bench a,Hall,ours,0.125")
         self.assertEqual(expected, flip.fill_csv(text, self.RESULT))
 
+    def test_rows_without_the_scene_have_a_mode_and_a_coding(self):
+        rows = [{"mode": "scene", "coding": "zstd"}, {"mode": "warp", "coding": "zstd"}, {"mode": "warp", "coding": "jpeg 75"}]
+        pictures = [{"input": "warp zstd", "flip": 0.25}, {"input": "warp zstd", "flip": 0.75}, {"input": "warp jpeg 75", "flip": 1.0}]
+        result = {"command": "bench a", "scene": "Hall", "rows": rows, "pictures": pictures}
+        flip.add_means(result)
+        self.assertEqual([None, 0.5, 1.0], [row.get("flip") for row in rows])
+        text = "command,scene,mode,coding,flip\nbench a,Hall,scene,zstd,\nbench a,Hall,warp,zstd,\nbench a,Barn,warp,zstd,\n"
+        self.assertEqual(text.replace("Hall,warp,zstd,", "Hall,warp,zstd,0.5"), flip.fill_csv(text, result))
+
     def test_other_tables_are_refused(self):
         with self.assertRaises(ValueError):
             flip.fill_csv("a,b\n1,2\n", self.RESULT)

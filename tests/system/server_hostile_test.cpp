@@ -69,14 +69,13 @@ TEST_F(Hostile, ASlowReaderCostsItsCreditsAndGetsTheNewestFrames) {
         ASSERT_TRUE(trailer.has_value());
         first_id = i == 0 ? trailer->frame_id() : first_id;
         last_id = trailer->frame_id();
-        std::this_thread::sleep_for(100ms); // ten frames of the channel
+        EXPECT_TRUE(bystander_.gets_more_frames()); // meanwhile the channel goes on, however busy the machine is
         EXPECT_LE(served_.metric("fieldcast_bytes_in_flight{channel=\"synthetic\"}"),
                   session::kMaxCredits * (kFrameBytes + 36 * 1024)) // and those of the bystander, compressed
             << "what it has not read is bounded";
         call.acknowledge(*trailer);
     }
     EXPECT_GT(last_id - first_id, std::uint64_t{kFrames}) << "what it missed was not sent to it later";
-    EXPECT_TRUE(bystander_.gets_more_frames());
     call.half_close();
     EXPECT_TRUE(call.finish().ok());
     expect_closed_for("finished");
