@@ -8,16 +8,15 @@
 layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { HoleParams params; };
 
-#define PATH_ENDS_IN_SOURCE
+#define PATH_ENDS_IN_KNOWN_LIGHT
 #include "lib/holes.glsl"
 #include "lib/listed_path.glsl"
+#include "lib/source_light.glsl"
 
-bool ends_in_source() {
-    return (params.stages & kHolesEndInSource) != 0u;
-}
-
-CameraBuffer source_cameras() {
-    return params.frames.at[0].cameras;
+bool known_light(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3 reflected) {
+    reflected = vec3(0.0);
+    return (params.stages & kHolesEndInSource) != 0u &&
+           light_in_source(params.frames.at[0].cameras, s, t.instance, b, reflected);
 }
 
 void main() {

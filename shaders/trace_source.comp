@@ -4,10 +4,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
 #include "lib/pages.glsl"
+#define PATH_ENDS_IN_KNOWN_LIGHT
 #include "lib/path.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { TraceSourceParams params; };
+
+#include "lib/history_light.glsl"
+
+bool known_light(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3 reflected) {
+    reflected = vec3(0.0);
+    return (params.path & kPathEndsInHistory) != 0u && light_in_history(t, barycentrics, s, b, reflected);
+}
 
 void add_samples(uint index, uvec2 pixel, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
     SceneInfo info = load_scene_info();

@@ -19,6 +19,7 @@ std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, 
     preset.settings.holes = HoleFilling::path_traced();
     preset.settings.light_sampling = LightSampling::plain();
     preset.settings.sampler = Sampler::kSobol;
+    preset.settings.history_light = false;
     preset.settings.reflections = false;
     if (name == "reprojected") {
         preset.settings.denoiser = Denoiser::kNone;
@@ -49,6 +50,8 @@ bool change(Preset& preset, const std::string& word) {
         settings.light_sampling = LightSampling::plain();
     } else if (word == "one-light-sample") {
         settings.light_sampling.each_kind = false;
+    } else if (word == "no-history-light") {
+        settings.history_light = false;
     } else if (word == "no-reflections") {
         settings.reflections = false;
     } else if (word == "no-guard-band") {
@@ -78,7 +81,7 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
 
 std::string preset_names() {
     return "reprojected, svgf, bmfr, paper, paper-red, ours, red; changed by /sobol, /z-sobol, /no-candidates, "
-           "/one-light-sample, /no-reflections, /no-guard-band, /traced-holes";
+           "/one-light-sample, /no-history-light, /no-reflections, /no-guard-band, /traced-holes";
 }
 
 } // namespace fieldcast

@@ -72,6 +72,9 @@ struct RenderSettings {
     bool next_event_estimation = true;
     LightSampling light_sampling;
     Sampler sampler = Sampler::kZSobol;
+    /// The source's paths end on surfaces that the frame before showed, with the light that it had for them; not where
+    /// views are denoised or still frames averaged (docs/lightfield.md).
+    bool history_light = true;
     /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. Where little of the picture is lit, its
     /// light is far above the mean: 20 took a third of Sponza's indirect light (docs/benchmarks.md).
     float indirect_clamp = 100.0F;

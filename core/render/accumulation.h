@@ -88,6 +88,7 @@ public:
     /// Of this frame: its geometry from the beginning, the rest once record() ran. Filters may replace its
     /// illumination.
     const SourceHistory& now() const { return history_[current_]; }
+    const SourceHistory& before() const { return history_[1 - current_]; } ///< of the last one
     const std::array<SourceHistory, 2>& histories() const { return history_; } ///< now() is histories()[current()]
     std::uint32_t current() const { return current_; }
     const gpu::Buffer& taps() const { return taps_; } ///< HistoryTaps: the pixels of the frame before that entered

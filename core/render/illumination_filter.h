@@ -23,6 +23,7 @@ public:
     const gpu::Buffer& noisy_specular() const { return accumulation_.noisy().specular.buffer; }
     const gpu::Buffer& noisy_punctual() const { return accumulation_.noisy_punctual().buffer; }
     const gpu::Buffer& geometry() const { return accumulation_.now().geometry; }
+    const gpu::Buffer& previous_geometry() const { return accumulation_.before().geometry; }
 
     /// Records what the settings ask for. The result is in `diffuse()` and `specular()`.
     void record(gpu::Recorder& recorder, const FilterFrame& frame);

@@ -35,7 +35,7 @@ struct SourceRenderer::State {
     bool has_history(const FrameHeader& header) const;
     std::uint32_t still_frames(const FrameHeader& header) const;
     void upload_cameras();
-    void record_trace();
+    void record_trace(bool ends_in_history);
     void record_filter(bool has_history, bool is_still);
     void record_pack();
     struct Packed {
@@ -85,7 +85,7 @@ void SourceRenderer::State::upload_cameras() {
     gpu::write_buffer(device, cameras, std::as_bytes(std::span(records)));
 }
 
-void SourceRenderer::State::record_trace() {
+void SourceRenderer::State::record_trace(bool ends_in_history) {
     const FrameHeader& header = planes.header();
     const Camera camera = planes.camera();
     shared::TraceSourceParams params{};
@@ -96,13 +96,17 @@ void SourceRenderer::State::record_trace() {
     params.specular = filter.noisy_specular().address();
     params.punctual = is_punctual_apart ? filter.noisy_punctual().address() : 0;
     params.invalid_samples = invalid_samples.address();
+    params.previous_geometry = filter.previous_geometry().address();
+    params.previous_diffuse = planes.plane(PlaneSemantic::kDiffuse).address();
+    params.previous_specular = planes.plane(PlaneSemantic::kSpecular).address();
     params.width = camera.width_px;
     params.height = camera.height_px;
     params.seed = header.seed;
     params.first_sample = header.noise_frame * header.settings.samples_per_pixel;
     params.samples_per_pixel = header.settings.samples_per_pixel;
     params.source_count = planes.source_count();
-    params.path = path_bits(header.settings) | (is_punctual_apart ? shared::kPathPunctualApart : 0U);
+    params.path = path_bits(header.settings) | (is_punctual_apart ? shared::kPathPunctualApart : 0U) |
+                  (ends_in_history ? shared::kPathEndsInHistory : 0U);
     params.max_indirect = max_indirect(header);
     recorder.stage("source_trace");
     recorder.dispatch(trace, {&scene.bindings()}, params,
@@ -175,7 +179,7 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     s.upload_cameras();
 
     s.surfaces.record(s.recorder, s.planes, s.cameras.address(), s.filter.geometry());
-    s.record_trace();
+    s.record_trace(header.settings.history_light && has_history && !is_still && !denoises_views(timed));
     const bool is_filtered = !denoises_views(timed) || s.planes.page_count() > s.planes.source_count();
     if (is_filtered) {
         s.record_filter(has_history, is_still);

@@ -8,13 +8,12 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kLevels = 5;
-
 /// What tells SVGF+ from SVGF, whose values are those of its paper.
 struct Tuning {
     float sigma_luminance = 4.0F;
     float sigma_depth = 1.0F;
     std::uint32_t normal_squarings = 7; // 128
+    std::uint32_t levels = 5;
     int outer_radius = 2;               // taps of the levels after the first
     float slow_share = 1.0F;            // of α: least weight of a frame in illumination
     bool follows_lobes = false;
@@ -26,6 +25,7 @@ constexpr Tuning kSvgf{};
 constexpr Tuning kSvgfPlus{.sigma_luminance = 3.0F,
                            .sigma_depth = 1.0F,
                            .normal_squarings = 5,
+                           .levels = 4,
                            .outer_radius = 1,
                            .slow_share = 1.0F / 6.0F,
                            .follows_lobes = true,
@@ -76,7 +76,7 @@ void Svgf::bind() {
     }
 }
 
-// Variance estimate, then five levels. SVGF: the first level's colour replaces the history (SVGF, section 4.3).
+// Variance estimate, then the levels. SVGF: the first level's colour replaces the history (SVGF, section 4.3).
 const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     resize();
     const Tuning& tuning = tuning_of(frame.settings.denoiser);
@@ -105,10 +105,10 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     if (!tuning.feeds_back) {
         keep_as_history(recorder, scratch_[0]);
     }
-    for (std::uint32_t level = 0; level < kLevels; ++level) {
+    for (std::uint32_t level = 0; level < tuning.levels; ++level) {
         params.step = 1U << level;
         params.radius = level == 0 ? 2 : tuning.outer_radius;
-        params.limits_outliers = tuning.limits_outliers && level + 1 == kLevels ? 1 : 0;
+        params.limits_outliers = tuning.limits_outliers && level + 1 == tuning.levels ? 1 : 0;
         run(atrous_, input == 1 ? 2 : 1);
         if (level == 0 && tuning.feeds_back) {
             keep_as_history(recorder, scratch_[input - 1]);

@@ -171,6 +171,7 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     to_proto(settings.holes, *message.mutable_holes());
     message.set_accumulate(settings.accumulate);
     message.set_reflections(settings.reflections);
+    message.set_history_light(settings.history_light);
     message.set_sampler(settings.sampler == Sampler::kZSobol ? v1::SAMPLER_Z_SOBOL : v1::SAMPLER_SOBOL);
     message.set_accumulate_views(settings.accumulate_views);
     message.set_route(route_to_proto(settings.route));
@@ -206,6 +207,7 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     settings.holes = *holes;
     settings.accumulate = message.accumulate();
     settings.reflections = message.reflections();
+    settings.history_light = message.history_light();
     settings.sampler = message.sampler() == v1::SAMPLER_Z_SOBOL ? Sampler::kZSobol : Sampler::kSobol;
     settings.accumulate_views = message.accumulate_views();
     settings.route = *route;

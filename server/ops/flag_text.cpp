@@ -208,6 +208,7 @@ void apply_preset(FlagText& text, Config& config) {
     text.sampler = word_of(preset->settings.sampler, kSamplers);
     text.reflections = word_of(preset->settings.reflections, kSwitch);
     text.each_light_kind = word_of(preset->settings.light_sampling.each_kind, kSwitch);
+    text.history_light = word_of(preset->settings.history_light, kSwitch);
     text.route = word_of(preset->settings.route, kRoutes);
     text.accumulate_views = word_of(preset->settings.accumulate_views, kSwitch);
     text.holes = preset->settings.holes == HoleFilling::path_traced() ? "none" : "all";
@@ -242,6 +243,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
     read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
     read_word("--each-light-kind", text.each_light_kind, kSwitch, config.settings.light_sampling.each_kind, problems);
+    read_word("--history-light", text.history_light, kSwitch, config.settings.history_light, problems);
     read_word("--reflections", text.reflections, kSwitch, config.settings.reflections, problems);
     read_word("--route", text.route, kRoutes, config.settings.route, problems);
     read_word("--accumulate-views", text.accumulate_views, kSwitch, config.settings.accumulate_views, problems);

@@ -24,6 +24,7 @@ struct FlagText {
     bool lacks_next_event_estimation = false;
     std::string reflections = "on";
     std::string each_light_kind = "on";
+    std::string history_light = "on";
     std::string preset = "ours"; ///< what other flags' defaults come from
     std::string denoiser = "svgf+";
     std::string route = "green";

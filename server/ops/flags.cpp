@@ -119,6 +119,10 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
                    "lamps and sun are filtered apart; off: one for all")
         ->group("Rendering")
         ->capture_default_str();
+    app.add_option("--history-light", text.history_light,
+                   "on: paths end on surfaces that the frame before showed, with its light for them; or off")
+        ->group("Rendering")
+        ->capture_default_str();
     app.add_flag("--no-nee", text.lacks_next_event_estimation, "Without next event estimation")->group("Rendering");
     app.add_flag("--accumulate", settings.accumulate,
                  "While nothing moves, average frames without bias instead of denoising them")

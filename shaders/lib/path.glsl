@@ -6,10 +6,10 @@
 #include "lib/lights.glsl"
 #include "lib/ray_origin.glsl"
 #include "lib/traversal.glsl"
-#ifdef PATH_ENDS_IN_SOURCE
-#include "lib/source_light.glsl"
-bool ends_in_source();         // whether paths end on surfaces that the sources show: the including kernel's
-CameraBuffer source_cameras();
+#ifdef PATH_ENDS_IN_KNOWN_LIGHT
+// Light that `s`, at `barycentrics` of `t`, reflects to anywhere, if that is known already: the including kernel's. Such
+// paths go no further.
+bool known_light(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3 reflected);
 #endif
 
 struct PathSettings {
@@ -228,13 +228,14 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
         } else {
             cone_spread += 0.1 * sqrt(b.alpha);
             cone_width_m += cone_spread * hit.t;
-            s = make_surface(load_world_triangle(hit.instance, hit.primitive), hit.barycentrics, direction, cone_width_m);
+            WorldTriangle triangle = load_world_triangle(hit.instance, hit.primitive);
+            s = make_surface(triangle, hit.barycentrics, direction, cone_width_m);
             arriving = emitted_light(info, settings, each_kind, candidates, s, direction, hit.t, value.pdf);
             b = make_bsdf(s, direction);
-#ifdef PATH_ENDS_IN_SOURCE
-            vec3 reflected = vec3(0.0);
-            ends = ends_in_source() && light_in_source(source_cameras(), s, hit.instance, b, reflected);
-            arriving += reflected;
+#ifdef PATH_ENDS_IN_KNOWN_LIGHT
+            vec3 reflected;
+            ends = bounce + 1u < settings.max_bounces && known_light(triangle, hit.barycentrics, s, b, reflected);
+            arriving += ends ? reflected : vec3(0.0);
 #endif
         }
         if (bounce == 0u) {

@@ -3,18 +3,14 @@
 // `params.settings` (ReprojectSettings) and binds set 1.
 #ifndef FIELDCAST_LIB_SOURCE_LIGHT
 #define FIELDCAST_LIB_SOURCE_LIGHT
-#include "lib/bsdf.glsl"
+#include "lib/known_light.glsl"
 #include "lib/reprojection.glsl"
-
-const float kMaxSpecularShare = 0.25; // of a surface that may be seen from elsewhere than the source
 
 // Light that `s`, seen from anywhere, reflects, from the sources' illumination of that surface; false: no source shows it,
 // or what they show depends on the viewer too much. Emission is not part of it.
 bool light_in_source(CameraBuffer cameras, Surface s, uint instance, Bsdf b, out vec3 reflected) {
     reflected = vec3(0.0);
-    bool is_rough = s.roughness >= 0.35 || luminance(b.specular_modulation) <= 0.05;
-    float specular_share = luminance(b.specular_modulation) / max(luminance(b.diffuse_modulation + b.specular_modulation), 1e-6);
-    if (!is_rough || specular_share > kMaxSpecularShare) {
+    if (!looks_alike_from_anywhere(s, b)) {
         return false;
     }
     Gathered sum = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardFrustum);

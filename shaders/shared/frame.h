@@ -62,6 +62,7 @@ const uint kPathNextEventEstimation = 1u << 24;
 const uint kPathEachLightKind = 1u << 25;
 const uint kPathScreenSampler = 1u << 26;
 const uint kPathPunctualApart = 1u << 27;
+const uint kPathEndsInHistory = 1u << 28;
 
 // trace_source.comp: path traces every pixel of the sources, every page.
 struct TraceSourceParams {
@@ -72,6 +73,9 @@ struct TraceSourceParams {
     Vec4Buffer specular;         // out
     Vec4Buffer punctual;         // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
     UintBuffer invalid_samples;  // counter
+    Uvec4Buffer previous_geometry; // with kPathEndsInHistory: GeometryTexel of the frame before
+    UintBuffer previous_diffuse;   // … and its wire planes
+    UintBuffer previous_specular;
     uint width;
     uint height;
     uint seed;

@@ -64,6 +64,7 @@ FrameHeader plain_header(const Camera& camera, std::uint32_t samples) {
     header.settings.indirect_clamp = 0.0F;
     header.settings.denoiser = Denoiser::kNone;
     header.settings.temporal_accumulation = false;
+    header.settings.history_light = false;
     header.settings.holes = HoleFilling::path_traced();
     return header;
 }

@@ -73,6 +73,7 @@ TEST(Convert, RouteOfAFrameSurvives) {
     FrameHeader header = test_header(7);
     header.settings.route = Route::kRed;
     header.settings.accumulate_views = true;
+    header.settings.history_light = true;
     v1::FrameHeader message;
     to_proto(header, message);
     const auto back = from_proto(message, 7);
@@ -80,6 +81,7 @@ TEST(Convert, RouteOfAFrameSurvives) {
     EXPECT_EQ(back->settings, header.settings);
     message.mutable_settings()->clear_route(); // as senders wrote before there were two
     message.mutable_settings()->clear_accumulate_views();
+    message.mutable_settings()->clear_history_light();
     const auto old = from_proto(message, 7);
     ASSERT_TRUE(old) << old.error().message;
     EXPECT_EQ(old->settings, test_header(7).settings);

@@ -24,6 +24,7 @@ inline FrameHeader test_header(std::uint64_t frame_id, std::uint32_t width_px = 
     header.guard_band = {3, 4, 1, 2};
     header.settings.samples_per_pixel = 3;
     header.settings.next_event_estimation = false;
+    header.settings.history_light = false;
     header.settings.tone_map = ToneMap::kAces;
     header.settings.exposure = 0.18F;
     header.settings.reprojection.min_weight = 0.0F;

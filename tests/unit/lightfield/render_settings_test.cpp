@@ -51,6 +51,9 @@ TEST(Presets, AreChangedByWords) {
     EXPECT_EQ(find_preset("ours/no-candidates", 6, 6)->settings.light_sampling, LightSampling::plain());
     EXPECT_TRUE(find_preset("ours", 6, 6)->settings.light_sampling.each_kind);
     EXPECT_EQ(find_preset("ours/one-light-sample", 6, 6)->settings.light_sampling, (LightSampling{4, false}));
+    EXPECT_TRUE(find_preset("ours", 6, 6)->settings.history_light);
+    EXPECT_FALSE(find_preset("ours/no-history-light", 6, 6)->settings.history_light);
+    EXPECT_FALSE(find_preset("paper", 6, 6)->settings.history_light);
     EXPECT_EQ(find_preset("svgf/z-sobol", 6, 6)->settings.sampler, Sampler::kZSobol);
     EXPECT_FALSE(find_preset("ours/better", 6, 6));
 }

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Of which surfaces images know the light that they send elsewhere.
+#ifndef FIELDCAST_LIB_KNOWN_LIGHT
+#define FIELDCAST_LIB_KNOWN_LIGHT
+#include "lib/bsdf.glsl"
+
+const float kMaxSpecularShare = 0.25; // of a surface that may be seen from elsewhere than the source
+
+bool looks_alike_from_anywhere(Surface s, Bsdf b) {
+    bool is_rough = s.roughness >= 0.35 || luminance(b.specular_modulation) <= 0.05;
+    float specular_share = luminance(b.specular_modulation) / max(luminance(b.diffuse_modulation + b.specular_modulation), 1e-6);
+    return is_rough && specular_share <= kMaxSpecularShare;
+}
+
+#endif
