@@ -94,6 +94,11 @@ void Admission::observe(Id id, Seconds used) {
     }
 }
 
+bool Admission::has_place(Id id) const {
+    const std::optional<Id> replaced = cameras_.at(id).replaced;
+    return !(replaced && cameras_.contains(*replaced));
+}
+
 std::uint32_t Admission::cameras_of(const std::string& channel) const {
     return static_cast<std::uint32_t>(
         std::ranges::count_if(cameras_, [&](const auto& entry) { return entry.second.channel == channel; }));
@@ -108,9 +113,8 @@ double Admission::promised_ms_per_second(const std::string& channel) const {
 }
 
 std::size_t Admission::places() const {
-    return static_cast<std::size_t>(std::ranges::count_if(cameras_, [&](const auto& entry) {
-        return !(entry.second.replaced && cameras_.contains(*entry.second.replaced)); // that has the place until it leaves
-    }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(cameras_, [&](const auto& entry) { return has_place(entry.first); }));
 }
 
 double Admission::promise(const Camera& camera) const {

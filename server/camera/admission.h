@@ -61,6 +61,9 @@ public:
     /// A frame of `id` has taken so long. The first ones after a change do not count: they make room for new views.
     void observe(Id id, Seconds used);
 
+    /// False while the one is there that it replaces.
+    bool has_place(Id id) const;
+
     std::uint32_t cameras_of(const std::string& channel) const;
     double promised_ms_per_second(const std::string& channel) const;
 
@@ -73,8 +76,8 @@ private:
         std::string channel;
         feed::CameraLoad load;
         std::optional<Id> replaced = std::nullopt; ///< whose place it takes when that has left
-        double correction = 1.0; ///< of its own frames
-        int uncounted = 0;       ///< frames still to come that do not count
+        double correction = 1.0;                   ///< of its own frames
+        int uncounted = 0;                         ///< frames still to come that do not count
     };
 
     std::size_t places() const;                 ///< that are taken

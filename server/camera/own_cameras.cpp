@@ -96,7 +96,7 @@ tl::expected<OwnCameras::Id, Rejection> OwnCameras::add(const std::shared_ptr<co
         id = ++state->last_id;
         problem = state->admission.admit(id, channel->info.name, load, replaced);
         if (!problem) {
-            state->cameras.emplace(id, Camera{.channel = channel, .feed = feed, .running = nullptr, .after = replaced});
+            state->cameras.emplace(id, Camera{.channel = channel, .feed = feed, .running = nullptr});
         }
     }
     if (problem) {
@@ -137,7 +137,7 @@ void OwnCameras::close(Id id) {
             state->cameras.erase(id);
         }
     }
-    changed_.notify_all(); // also who is made after it
+    changed_.notify_all(); // also the one that replaces it
 }
 
 void OwnCameras::observe(Id id, std::chrono::duration<double> used) {
@@ -176,8 +176,7 @@ std::optional<OwnCameras::Id> OwnCameras::next_job(const std::stop_token& stop) 
     std::optional<Id> job;
     state_.lock().wait(changed_, [&](const State& state) {
         const auto is_new = [&](const auto& entry) {
-            const auto& [id, camera] = entry;
-            return camera.stage == Stage::kWaiting && !(camera.after && state.cameras.contains(*camera.after));
+            return entry.second.stage == Stage::kWaiting && state.admission.has_place(entry.first);
         };
         auto found = std::ranges::find_if(state.cameras, is_ended); // first: it makes room
         found = found == state.cameras.end() ? std::ranges::find_if(state.cameras, is_new) : found;

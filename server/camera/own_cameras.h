@@ -57,7 +57,6 @@ private:
         std::shared_ptr<void> running; ///< null before it is made
         Stage stage = Stage::kWaiting;
         bool is_closed = false;
-        std::optional<Id> after = std::nullopt; ///< made only when this one is gone
     };
     struct State {
         explicit State(const Limits& limits) : admission(limits) {}
