@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <csignal>
+#include "core/base/stop_signals.h"
+
 #include <stop_token>
 #include <thread>
 
@@ -24,7 +25,7 @@ public:
 private:
     void listen(const std::stop_token& stop);
 
-    sigset_t signals_{};
+    StopSignals signals_;
     std::stop_source source_;
     std::jthread thread_;
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/stop_signals.h"
 #include "server/channel/channel_list.h"
 #include "server/channel/offline_recording.h"
 #include "server/metrics/http_endpoint.h"
 #include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
 #include "server/ops/port_file.h"
-#include "server/ops/signals.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
 #include "server/session/frame_timings.h"
@@ -67,7 +67,7 @@ void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing
 }
 
 /// Until a signal, or until a channel fails.
-bool serve(const ops::StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
+bool serve(const StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
     const auto has_failed = [](const std::shared_ptr<feed::Feed>& feed) { return feed->has_failed(); };
     while (!signals.wait(kPollInterval)) {
         if (std::ranges::any_of(feeds, has_failed)) {
@@ -78,7 +78,7 @@ bool serve(const ops::StopSignals& signals, const std::vector<std::shared_ptr<fe
 }
 
 /// Until every client has gone, a second signal, or the limit.
-void drain(const ops::StopSignals& signals, service::GrpcServer& server, const std::string& reason) {
+void drain(const StopSignals& signals, service::GrpcServer& server, const std::string& reason) {
     server.begin_drain(reason);
     const auto deadline = Clock::now() + kDrainLimit;
     while (Clock::now() < deadline && !server.wait_until_drained(Clock::now() + kPollInterval)) {
@@ -90,7 +90,7 @@ void drain(const ops::StopSignals& signals, service::GrpcServer& server, const s
     log::info("drained", {{"sessions", server.session_count()}});
 }
 
-int run(const ops::Config& config, const ops::StopSignals& signals) {
+int run(const ops::Config& config, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     const auto registry = std::make_shared<metrics::Registry>();
@@ -126,7 +126,7 @@ int probe(const service::HealthQuestion& question) {
 }
 
 /// Files instead of a service; several channels get a folder each.
-int render(const ops::Config& config, const ops::OfflineJob& job, const ops::StopSignals& signals) {
+int render(const ops::Config& config, const ops::OfflineJob& job, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
@@ -152,7 +152,7 @@ int render(const ops::Config& config, const ops::OfflineJob& job, const ops::Sto
 }
 
 /// A recording instead of a service.
-int record(const ops::Config& config, const ops::RecordJob& job, const ops::StopSignals& signals) {
+int record(const ops::Config& config, const ops::RecordJob& job, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
@@ -172,7 +172,7 @@ int record(const ops::Config& config, const ops::RecordJob& job, const ops::Stop
 }
 
 int start(int argc, char** argv) {
-    const ops::StopSignals signals; // before any thread exists
+    const StopSignals signals; // before any thread exists
     const ops::Invocation invocation = ops::read_flags(argc, argv);
     for (const std::string& problem : invocation.problems) {
         std::cerr << "fieldcast-server: " << problem << '\n';

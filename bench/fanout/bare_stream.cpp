@@ -3,8 +3,8 @@
 //     fieldcast-bare-stream MESSAGES FRAMES_PER_SECOND PORT_FILE
 #include "bench/fanout/bare_server.h"
 #include "core/base/error.h"
+#include "core/base/stop_signals.h"
 
-#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -15,11 +15,7 @@ int main(int argc, char** argv) {
         std::cerr << "fieldcast-bare-stream MESSAGES FRAMES_PER_SECOND PORT_FILE\n";
         return 2;
     }
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr); // before any thread exists
+    const fieldcast::StopSignals signals; // before any thread exists
     try {
         const double frames_per_second = std::strtod(argv[2], nullptr);
         if (!(frames_per_second > 0.0)) {
@@ -27,8 +23,8 @@ int main(int argc, char** argv) {
         }
         const BareServer server(read_messages(argv[1]), frames_per_second);
         std::ofstream(argv[3]) << server.port() << '\n';
-        int signal = 0;
-        sigwait(&signals, &signal);
+        while (!signals.wait(std::chrono::hours(1))) {
+        }
     } catch (const std::exception& problem) {
         std::cerr << "fieldcast-bare-stream: " << problem.what() << '\n';
         return 1;

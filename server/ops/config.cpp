@@ -37,8 +37,9 @@ void expect(Problems& problems, bool is_right, const char* flag, const T& value,
 
 void check_channels(const Config& config, Problems& problems) {
     if (config.channels.empty() && config.replays.empty()) {
-        problems.emplace_back("--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE, or a "
-                              "recording with --replay FILE");
+        problems.emplace_back(
+            "--scene: no scene given; name at least one with --scene FILE or --channel NAME=FILE, or a "
+            "recording with --replay FILE");
     }
     expect(problems, config.channels.size() + config.replays.size() <= kMaxChannels, "--channel",
            config.channels.size() + config.replays.size(),
@@ -82,7 +83,8 @@ void check_rendering(const Config& config, Problems& problems) {
     const RenderSettings& settings = config.settings;
     expect(problems, settings.samples_per_pixel >= 1 && settings.samples_per_pixel <= kMaxSamples, "--spp",
            settings.samples_per_pixel, "1 to 65536");
-    expect(problems, settings.light_sampling.candidates >= 1 && settings.light_sampling.candidates <= kMaxLightCandidates,
+    expect(problems,
+           settings.light_sampling.candidates >= 1 && settings.light_sampling.candidates <= kMaxLightCandidates,
            "--light-candidates", settings.light_sampling.candidates, "1 to 64");
     expect(problems, settings.max_bounces <= kMaxBounces, "--bounces", settings.max_bounces, "0 to 256");
     expect(problems, settings.temporal_alpha > 0.0F && settings.temporal_alpha <= 1.0F, "--alpha",

@@ -81,6 +81,7 @@ struct Config {
 
     // Device.
     std::string traversal = "auto";
+    std::string visibility = "auto";
     std::string device; ///< part of its name; empty: best
     bool has_validation = false;
 

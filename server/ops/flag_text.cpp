@@ -125,8 +125,9 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
     if (auto positions = parse_sources(text.sources, config.largest_grid)) {
         config.source_positions = std::move(*positions);
     } else {
-        problems.push_back("--sources " + text.sources +
-                           ": middle, top-left, diagonal, triangle, corners, or views of the largest grid as in \"0,0;5,5\"");
+        problems.push_back(
+            "--sources " + text.sources +
+            ": middle, top-left, diagonal, triangle, corners, or views of the largest grid as in \"0,0;5,5\"");
     }
     if (const auto metres = read_number<float>(text.convergence)) {
         config.lattice.convergence_m = *metres;

@@ -65,9 +65,10 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--largest-grid", text.largest_grid, "ROWSxCOLS that the guard band is made for")
         ->group("Light field")
         ->capture_default_str();
-    app.add_option("--sources", text.sources,
-                   "Path traced views: middle, top-left, diagonal, triangle, corners, or views of the largest grid as in "
-                   "\"0,0;5,5\"")
+    app.add_option(
+           "--sources", text.sources,
+           "Path traced views: middle, top-left, diagonal, triangle, corners, or views of the largest grid as in "
+           "\"0,0;5,5\"")
         ->group("Light field")
         ->capture_default_str();
     app.add_option("--guard-band", text.guard_band, "auto, none, or LEFT,RIGHT,TOP,BOTTOM in pixels")
@@ -137,6 +138,11 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
         ->group("Rendering")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
+    app.add_option("--visibility", config.visibility,
+                   "How it is found what views see: rays, raster, or auto: what is faster")
+        ->group("Rendering")
+        ->check(CLI::IsMember({"auto", "rays", "raster"}))
+        ->capture_default_str();
     app.add_option("--device", config.device, "Part of a Vulkan device's name; default: the best")->group("Rendering");
     app.add_flag("--validation", config.has_validation, "Vulkan validation layer")->group("Rendering");
 }
@@ -155,7 +161,8 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
                    "HOST:PORT of /metrics for Prometheus; beyond loopback only with TLS and tokens")
         ->group("Serving");
     app.add_option("--metrics-port-file", text.metrics_port_file, "Gets the port number of /metrics")->group("Serving");
-    app.add_option("--frame-log", text.frame_log, "FILE.csv or .jsonl: a row per frame and client, from pose to display")
+    app.add_option("--frame-log", text.frame_log,
+                   "FILE.csv or .jsonl: a row per frame and client, from pose to display")
         ->group("Serving");
     app.add_option("--trace", text.trace, "FILE.json for ui.perfetto.dev: every frame of every channel and client")
         ->group("Serving");

@@ -30,8 +30,8 @@ struct Invocation {
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. "render" or "record" in front asks for files instead of a service. Reads files that
-/// flags name, changes nothing.
+/// Reads flags, or a --config file with the same names. "render" or "record" in front asks for files instead of a
+/// service. Reads files that flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

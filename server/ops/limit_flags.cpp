@@ -35,7 +35,8 @@ void add_limit_flags(CLI::App& app, Config& config) {
         "Sessions that one address may open on average; --max-sessions-per-peer of them at once");
     add("--max-messages-per-second", limits.max_messages_per_second,
         "Of one session on average, twice as many at once; a Configure counts as 50");
-    add("--max-poses-per-second", limits.max_poses_per_second, "Of one session that steers, on average; as many at once");
+    add("--max-poses-per-second", limits.max_poses_per_second,
+        "Of one session that steers, on average; as many at once");
     add("--max-own-cameras", config.max_own_cameras, "Of clients that have one each, at the same time");
     add("--max-own-cameras-per-peer", limits.max_own_cameras_per_peer, "Of clients of one address");
     add("--own-camera-budget", config.own_camera_budget_ms,

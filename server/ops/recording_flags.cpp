@@ -61,8 +61,9 @@ void check_records(const Config& config, std::vector<std::string>& problems) {
             return record.channel.empty() || channel.name == record.channel;
         });
         if (is_known && recorded->control == feed::CameraControl::kOwn) {
-            problems.push_back("--record " + record.file.string() + ": with --camera-control own every client of channel '" +
-                               recorded->name + "' sees something else; record a channel with another camera control");
+            problems.push_back("--record " + record.file.string() +
+                               ": with --camera-control own every client of channel '" + recorded->name +
+                               "' sees something else; record a channel with another camera control");
         }
         if (!channels.insert(record.channel).second) {
             problems.push_back("--record " + record.file.string() + ": this channel is recorded already");
@@ -78,11 +79,13 @@ void add_recording_flags(CLI::App& app, RecordingText& text, Config& config) {
         ->group("Recordings");
     app.add_option("--replay-fps", config.replay_fps, "Frames per second of replays; default: as recorded")
         ->group("Recordings");
-    app.add_option("--record", text.records, "FILE or CHANNEL=FILE: records that channel while serving. May be repeated")
+    app.add_option("--record", text.records,
+                   "FILE or CHANNEL=FILE: records that channel while serving. May be repeated")
         ->group("Recordings");
-    app.add_option("--record-form", text.forms,
-                   "What to record: views[:RxC[:WxH]][:CODEC[:QUALITY]], planes[:CODEC[:QUALITY]] or g-buffer likewise; "
-                   "codecs raw, zstd, jpeg. May be repeated; default: views")
+    app.add_option(
+           "--record-form", text.forms,
+           "What to record: views[:RxC[:WxH]][:CODEC[:QUALITY]], planes[:CODEC[:QUALITY]] or g-buffer likewise; "
+           "codecs raw, zstd, jpeg. May be repeated; default: views")
         ->group("Recordings");
     app.add_option("--record-frames", config.record_frames, "Ends each recording after so many frames; 0: never")
         ->group("Recordings")

@@ -2,10 +2,10 @@
 // The real service on loopback with frames that cost nothing to render: for measurements of the way to the client.
 //     synthetic_server PORT_FILE
 // 30 frames a second of 64x36 pixels until INT or TERM; 36 views as they are (--codec raw) are 60 Mbit/s.
+#include "core/base/stop_signals.h"
 #include "server/service/grpc_server.h"
 #include "server_synthetic.h"
 
-#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <thread>
@@ -33,18 +33,14 @@ int main(int argc, char** argv) {
         std::cerr << "synthetic_server PORT_FILE\n";
         return 2;
     }
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr); // before any thread exists
+    const StopSignals signals; // before any thread exists
     feed::ChannelInfo info = test::synthetic_info();
     info.frames_per_second = kFramesPerSecond;
     const auto feed = std::make_shared<feed::Feed>(info);
     const service::GrpcServer server({.host = "127.0.0.1", .port = 0}, {feed}, {});
     const std::jthread publisher([&](const std::stop_token& stop) { publish_until(stop, *feed); });
     std::ofstream(argv[1]) << server.port() << '\n';
-    int signal = 0;
-    sigwait(&signals, &signal);
+    while (!signals.wait(std::chrono::hours(1))) {
+    }
     return 0;
 }
