@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/bsdf.glsl"
 #include "lib/camera.glsl"
+#include "lib/history_taps.glsl"
 #include "lib/linear_index.glsl"
 #include "lib/lobe.glsl"
 #include "lib/pages.glsl"
@@ -42,8 +43,7 @@ struct Past {
     vec3 geometric_normal;
     vec3 normal;
     uint id;
-    float plane_limit_m;
-    float tangential_limit_m;
+    vec2 limits_m; // tap_limits_m()
     float mirror_turn; // angle between where it mirrors the camera now and then, radians
 };
 
@@ -59,9 +59,8 @@ int past_texel(CameraRecord camera, uint page, ivec2 at, Past past, float slack)
         return -1;
     }
     vec3 offset = camera.origin + camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x) - past.position;
-    bool same = abs(dot(offset, past.geometric_normal)) <= past.plane_limit_m &&
-                length(offset) <= past.tangential_limit_m * slack && dot(unpack_normal(geometry.y), past.normal) >= 0.5;
-    return same ? texel : -1;
+    vec2 limits_m = past.limits_m * vec2(1.0, slack);
+    return is_same_surface(offset, geometry.y, past.geometric_normal, past.normal, limits_m) ? texel : -1;
 }
 
 bool is_punctual_apart() {
@@ -147,18 +146,15 @@ Past past_surface(Visibility seen, CameraRecord now, CameraRecord before, vec2 p
     vec3 corner0 = load_vertex(t.vertices.x).xyz;
     vec3 corner1 = load_vertex(t.vertices.y).xyz;
     vec3 corner2 = load_vertex(t.vertices.z).xyz;
-    vec3 object = corner0 * (1.0 - at.x - at.y) + corner1 * at.x + corner2 * at.y;
     Past past;
-    past.position = m * vec4(object, 1.0);
+    past.position = previous_position(seen.instance, t.vertices, at.xy);
     vec3 e1 = m * vec4(corner1 - corner0, 0.0);
     vec3 e2 = m * vec4(corner2 - corner0, 0.0);
     vec3 area_normal = cross(e1, e2);
     past.geometric_normal = area_normal / max(length(area_normal), 1e-30);
     float depth = dot(past.position - before.origin, before.forward);
-    float footprint = max(depth, 0.0) / before.focal_px;
     vec3 view = normalize(past.position - before.origin);
-    past.plane_limit_m = 1.5 * footprint + 1e-4 * depth;
-    past.tangential_limit_m = 2.5 * footprint / max(0.1, abs(dot(view, past.geometric_normal)));
+    past.limits_m = tap_limits_m(depth, before.focal_px, abs(dot(view, past.geometric_normal)));
     past.id = (seen.instance << 12) | t.material;
     past.normal = normal;
     vec3 area_normal_now = cross(t.edge1, t.edge2);

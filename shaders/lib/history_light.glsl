@@ -4,15 +4,8 @@
 #ifndef FIELDCAST_LIB_HISTORY_LIGHT
 #define FIELDCAST_LIB_HISTORY_LIGHT
 #include "lib/camera.glsl"
+#include "lib/history_taps.glsl"
 #include "lib/known_light.glsl"
-#include "lib/packing.glsl"
-
-// Where the point was in the frame before.
-vec3 previous_position(WorldTriangle t, vec2 barycentrics) {
-    vec3 object = load_vertex(t.vertices.x).xyz * (1.0 - barycentrics.x - barycentrics.y) +
-                  load_vertex(t.vertices.y).xyz * barycentrics.x + load_vertex(t.vertices.z).xyz * barycentrics.y;
-    return load_previous_transform(t.instance) * vec4(object, 1.0);
-}
 
 // Texel of a source of the frame before whose nearest pixel to `position` shows that surface; kNoIndex: it does not.
 uint texel_in_history(uint source, vec3 position, Surface s, uint id) {
@@ -28,10 +21,8 @@ uint texel_in_history(uint source, vec3 position, Surface s, uint id) {
     uint texel = (source * params.height + at.y) * params.width + at.x;
     uvec4 geometry = params.previous_geometry.at[texel];
     vec3 offset = camera.origin + camera_direction(camera, vec2(at) + 0.5) * uintBitsToFloat(geometry.x) - position;
-    float footprint_m = p.z / camera.focal_px;
-    bool is_same = geometry.z == id && abs(dot(offset, s.geometric_normal)) <= 1.5 * footprint_m + 1e-4 * p.z &&
-                   length(offset) <= 2.5 * footprint_m * length(view) / max(facing, 0.1 * length(view)) &&
-                   dot(unpack_normal(geometry.y), s.normal) >= 0.5;
+    vec2 limits_m = tap_limits_m(p.z, camera.focal_px, facing / length(view));
+    bool is_same = geometry.z == id && is_same_surface(offset, geometry.y, s.geometric_normal, s.normal, limits_m);
     return is_same ? texel : kNoIndex;
 }
 
@@ -42,7 +33,7 @@ bool light_in_history(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out
     if (!looks_alike_from_anywhere(s, b)) {
         return false;
     }
-    vec3 position = previous_position(t, barycentrics);
+    vec3 position = previous_position(t.instance, t.vertices, barycentrics);
     for (uint i = 0u; i < params.source_count; ++i) {
         uint texel = texel_in_history(i, position, s, (t.instance << 12) | s.material);
         if (texel != kNoIndex) {
