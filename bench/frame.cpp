@@ -27,6 +27,7 @@ struct FrameOptions {
     std::string size = "1280x720";
     std::string device;
     std::string traversal = "auto";
+    std::string visibility = "auto";
     std::string json;
     std::string html;
     std::string out;
@@ -195,7 +196,7 @@ void run_frame(const FrameOptions& options) {
     const gpu::Device device({.name_contains = options.device});
     const BenchmarkScene known = find_benchmark_scene(options.scene);
     LightFieldScene scene(device, {known.file, options.environment, options.grid, options.spacing_m, options.traversal,
-                                   parse_size("--size", options.size)});
+                                   options.visibility, parse_size("--size", options.size)});
     const Preset preset = chosen_preset(
         options, scene.grid(), options.exposure > 0.0 ? static_cast<float>(options.exposure) : known.exposure);
     LightFieldRun run(device, scene, preset.settings, preset.has_guard_band);
@@ -246,6 +247,8 @@ void add_frame_command(CLI::App& app) {
                         "previous,isolated,cascade,source,denoise");
     command->add_option("--device", options->device, "part of the Vulkan device's name");
     command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
+    command->add_option("--visibility", options->visibility, "How views are made visible: auto, rays or raster")
+        ->capture_default_str();
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--html", options->html, "write a report with charts to this file");
     command->add_option("--out", options->out, "write the last frame's views to this folder");

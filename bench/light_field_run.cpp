@@ -21,7 +21,8 @@ scene::Scene load(const LightFieldScene::Options& options) {
 
 LightFieldScene::LightFieldScene(const gpu::Device& device, const Options& options)
     : size_(options.size), scene_(load(options)), camera_(find_camera(scene_)),
-      gpu_scene_(device, scene_, scene::choose_traversal(device, options.traversal)) {
+      gpu_scene_(device, scene_, scene::choose_traversal(device, options.traversal),
+                 scene::choose_visibility(device, options.visibility)) {
     if (camera_ == nullptr) {
         throw UserError(options.file.string() + ": has no camera");
     }

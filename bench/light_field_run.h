@@ -22,6 +22,7 @@ public:
         std::string grid = "6x6";
         double spacing_m = 0.0; ///< 0: the camera's, else 0.03
         std::string traversal = "auto";
+        std::string visibility = "auto"; ///< as in scene::choose_visibility
         Size size{};
     };
 
@@ -56,8 +57,8 @@ private:
 class LightFieldRun {
 public:
     /// `settings.exposure` 0: automatic, from the first frame. Renders that frame if so or if `has_guard_band`.
-    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings, bool has_guard_band,
-                  std::vector<LatticePosition> source_positions = middle_source());
+    LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
+                  bool has_guard_band, std::vector<LatticePosition> source_positions = middle_source());
 
     /// Frame number `frame` of the sequence, with the scene as it is posed now. Stage times are in the result's header.
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);

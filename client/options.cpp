@@ -79,14 +79,16 @@ void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
 }
 
 void add_plane_flags(CLI::App& app, FlagText& text) {
-    app.add_option("--planes", text.planes,
-                   "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
-                   "total-light: the same, with one plane of illumination instead of two")
+    app.add_option(
+           "--planes", text.planes,
+           "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
+           "total-light: the same, with one plane of illumination instead of two")
         ->check(CLI::IsMember({"g-buffer", "illumination", "total-light"}))
         ->capture_default_str();
-    app.add_option("--normal-bits", text.normal_bits,
-                   "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a fraction of "
-                   "the bytes, and turn normals by less than 1 degree")
+    app.add_option(
+           "--normal-bits", text.normal_bits,
+           "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a fraction of "
+           "the bytes, and turn normals by less than 1 degree")
         ->check(CLI::IsMember({8U, 16U}))
         ->capture_default_str();
 }
@@ -100,9 +102,10 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
         ->check(CLI::IsMember({"views", "scene", "warp"}))
         ->capture_default_str();
     add_plane_flags(app, text);
-    app.add_option("--codec", text.codecs,
-                   "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
-                   "raw, jpeg; of views: h264")
+    app.add_option(
+           "--codec", text.codecs,
+           "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
+           "raw, jpeg; of views: h264")
         ->delimiter(',')
         ->check(CLI::IsMember({"zstd", "raw", "jpeg", "h264"}))
         ->capture_default_str();
@@ -122,13 +125,18 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
+    app.add_option("--visibility", play.visibility,
+                   "Of mode scene, how it is found what views see: rays, raster, or auto: what is faster")
+        ->check(CLI::IsMember({"auto", "rays", "raster"}))
+        ->capture_default_str();
     app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
 }
 
 void add_steering_flags(CLI::App& app, FlagText& text) {
-    app.add_option("--steer", text.steer,
-                   "Move the channel's camera: orbit:radius=METRES,seconds=SECONDS, a JSON file of timed poses, or -: one "
-                   "pose a line from standard input");
+    app.add_option(
+        "--steer", text.steer,
+        "Move the channel's camera: orbit:radius=METRES,seconds=SECONDS, a JSON file of timed poses, or -: one "
+        "pose a line from standard input");
     app.add_flag("--steer-now", text.steers_now, "Fail if somebody else steers, instead of waiting for our turn");
 }
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # fieldcast_shaders(TARGET KERNELS … [SOURCE_DIR DIR]): each NAME.comp of DIR (default: shaders/) becomes a validated
 # DIR/NAME.spv.h in the build tree, included as "shaders/NAME.spv.h", with the words of the kernel in `NAME_spv`.
-# Kernels after TRACED trace rays: they are compiled once per traversal, as NAME_bvh and NAME_rayquery.
+# Kernels after TRACED trace rays: they are compiled once per traversal, as NAME_bvh and NAME_rayquery. Names after
+# RASTER are pairs of NAME.vert and NAME.frag, those after FRAGMENTS only NAME.frag, compiled as NAME_vert and NAME_frag.
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
-# One kernel under one name; uses the variables of fieldcast_shaders.
-macro(fieldcast_shader kernel name)
-    set(source ${ARG_SOURCE_DIR}/${kernel}.comp)
+# One file under one name; uses the variables of fieldcast_shaders.
+macro(fieldcast_shader file name)
+    set(source ${ARG_SOURCE_DIR}/${file})
     set(spirv ${output_dir}/${name}.spv)
     # The dependency file names ${spirv}, so that comes first in OUTPUT.
     add_custom_command(
@@ -22,7 +23,7 @@ macro(fieldcast_shader kernel name)
 endmacro()
 
 function(fieldcast_shaders target)
-    cmake_parse_arguments(ARG "" "SOURCE_DIR" "KERNELS;TRACED" ${ARGN})
+    cmake_parse_arguments(ARG "" "SOURCE_DIR" "KERNELS;TRACED;RASTER;FRAGMENTS" ${ARGN})
     if(NOT ARG_SOURCE_DIR)
         set(ARG_SOURCE_DIR ${PROJECT_SOURCE_DIR}/shaders)
     endif()
@@ -37,11 +38,18 @@ function(fieldcast_shaders target)
     set(headers)
     file(MAKE_DIRECTORY ${output_dir})
     foreach(kernel ${ARG_KERNELS})
-        fieldcast_shader(${kernel} ${kernel})
+        fieldcast_shader(${kernel}.comp ${kernel})
     endforeach()
     foreach(kernel ${ARG_TRACED})
-        fieldcast_shader(${kernel} ${kernel}_bvh)
-        fieldcast_shader(${kernel} ${kernel}_rayquery -DTRAVERSAL_RAY_QUERY)
+        fieldcast_shader(${kernel}.comp ${kernel}_bvh)
+        fieldcast_shader(${kernel}.comp ${kernel}_rayquery -DTRAVERSAL_RAY_QUERY)
+    endforeach()
+    foreach(pair ${ARG_RASTER})
+        fieldcast_shader(${pair}.vert ${pair}_vert)
+        fieldcast_shader(${pair}.frag ${pair}_frag)
+    endforeach()
+    foreach(name ${ARG_FRAGMENTS})
+        fieldcast_shader(${name}.frag ${name}_frag)
     endforeach()
     add_custom_target(${target}_spirv DEPENDS ${headers})
     add_library(${target} INTERFACE)

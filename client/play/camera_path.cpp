@@ -23,7 +23,8 @@ struct TimedPose {
     net::WantedPose pose;
 };
 
-template <std::size_t kCount> std::array<float, kCount> numbers_of(const nlohmann::json& json, const std::string& place) {
+template <std::size_t kCount>
+std::array<float, kCount> numbers_of(const nlohmann::json& json, const std::string& place) {
     std::array<float, kCount> numbers{};
     if (!json.is_array() || json.size() != kCount) {
         throw UserError(place + ": write " + std::to_string(kCount) + " numbers");
@@ -131,7 +132,8 @@ std::vector<TimedPose> read_timed_poses(const std::filesystem::path& file) {
     for (const nlohmann::json& entry : json) {
         const std::string place = "--steer " + file.string() + ": pose " + std::to_string(poses.size());
         const net::WantedPose pose = pose_of(entry, place);
-        const double time_s = entry.contains("time_s") && entry["time_s"].is_number() ? entry["time_s"].get<double>() : -1.0;
+        const double time_s =
+            entry.contains("time_s") && entry["time_s"].is_number() ? entry["time_s"].get<double>() : -1.0;
         if (!(time_s >= 0.0) || (!poses.empty() && !(time_s > poses.back().time_s))) {
             throw UserError(place + ": needs time_s, 0 or more and later than the pose before");
         }

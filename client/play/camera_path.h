@@ -12,8 +12,8 @@
 // Where a user who steers from the command line wants the camera.
 namespace fieldcast::client::play {
 
-/// The pose at a moment, `seconds` after we began to steer, if there is a new one since the last call. `start`: where the
-/// camera was when we came.
+/// The pose at a moment, `seconds` after we began to steer, if there is a new one since the last call. `start`: where
+/// the camera was when we came.
 using PoseSource = std::function<std::optional<net::WantedPose>(double seconds, const glm::mat4& start)>;
 
 /// "orbit:radius=2,seconds=10": around the point `radius` metres in front of where the camera was, +Y up, once in so

@@ -35,7 +35,8 @@ public:
             return std::nullopt;
         }
         const ChangeMoment& moment = changes_[next_].moment;
-        const bool is_due = (moment.after && now - *begin_ >= *moment.after) || (moment.frames && frames_ >= *moment.frames);
+        const bool is_due =
+            (moment.after && now - *begin_ >= *moment.after) || (moment.frames && frames_ >= *moment.frames);
         return is_due ? std::optional(changes_[next_++].wish) : std::nullopt;
     }
 

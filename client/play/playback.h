@@ -30,6 +30,7 @@ struct PlayOptions {
     // Of mode kScene:
     std::filesystem::path cache_folder;
     std::string traversal = "auto"; ///< as in scene::choose_traversal
+    std::string visibility = "auto"; ///< as in scene::choose_visibility
 };
 
 /// Whether frames of that mode are asked for, at once or by a change.
@@ -52,7 +53,8 @@ struct PlayResult {
     std::optional<Failure> failure; ///< empty if all wanted frames were shown, or on a stop request
 };
 
-/// There is no Vulkan device for modes that make views here. The message says what was found and what works without one.
+/// There is no Vulkan device for modes that make views here. The message says what was found and what works without
+/// one.
 class NoDeviceForViews : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -30,7 +30,7 @@ std::unique_ptr<RenderSide> RenderSide::make(const PlayOptions& options, const s
     if (plays_scenes) {
         scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
         side->hash_ = scene.hash;
-        side->scene_.emplace(side->device_, std::move(scene), options.traversal);
+        side->scene_.emplace(side->device_, std::move(scene), options.traversal, options.visibility);
     }
     return side;
 }

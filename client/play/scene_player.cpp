@@ -15,9 +15,11 @@ bool has_surfaces(const SourceFrame& frame) {
 
 } // namespace
 
-ScenePlayer::ScenePlayer(const gpu::Device& device, scene::Scene scene, const std::string& traversal)
-    : scene_(std::move(scene)), gpu_scene_(device, scene_, scene::choose_traversal(device, traversal)), planes_(device),
-      surfaces_(device, gpu_scene_), views_(device, gpu_scene_) {}
+ScenePlayer::ScenePlayer(const gpu::Device& device, scene::Scene scene, const std::string& traversal,
+                         const std::string& visibility)
+    : scene_(std::move(scene)), gpu_scene_(device, scene_, scene::choose_traversal(device, traversal),
+                                           scene::choose_visibility(device, visibility)),
+      planes_(device), surfaces_(device, gpu_scene_), views_(device, gpu_scene_) {}
 
 Decoded<Views> ScenePlayer::play(const SourceFrame& frame, const wire::ViewSet& set) {
     gpu_scene_.pose(frame.header.scene_time_ns, frame.header.cut);

@@ -13,8 +13,10 @@ namespace fieldcast::client::play {
 /// Makes views from source frames with our own copy of the scene: the renderers are those of the server.
 class ScenePlayer {
 public:
-    /// `device` must outlive this. `traversal` as in scene::choose_traversal.
-    ScenePlayer(const gpu::Device& device, scene::Scene scene, const std::string& traversal);
+    /// `device` must outlive this. `traversal` as in scene::choose_traversal, `visibility` as in
+    /// scene::choose_visibility.
+    ScenePlayer(const gpu::Device& device, scene::Scene scene, const std::string& traversal,
+                const std::string& visibility);
 
     /// Poses the scene from the frame's header and nothing else, rebuilds the G-buffer planes if the frame lacks any,
     /// and makes the views of `set`. Fails for frames that do not fit together.

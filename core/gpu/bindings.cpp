@@ -41,7 +41,7 @@ BindingLayout::BindingLayout(const Device& device, std::vector<Binding> bindings
         entry.binding = binding.binding;
         entry.descriptorType = descriptor_type(binding.type);
         entry.descriptorCount = binding.count;
-        entry.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+        entry.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
         entries.push_back(entry);
     }
     VkDescriptorSetLayoutCreateInfo info{};

@@ -18,10 +18,11 @@ struct FeatureChain {
     VkPhysicalDeviceAccelerationStructureFeaturesKHR acceleration{};
     VkPhysicalDeviceRayQueryFeaturesKHR ray_query{};
 
-    explicit FeatureChain(bool with_ray_query) {
+    FeatureChain(bool with_ray_query, bool with_rasteriser) {
         features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
         features.pNext = &v12;
         features.features.shaderInt64 = VK_TRUE;
+        features.features.independentBlend = with_rasteriser ? VK_TRUE : VK_FALSE;
         v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
         v12.pNext = &v13;
         v12.scalarBlockLayout = VK_TRUE;
@@ -30,6 +31,7 @@ struct FeatureChain {
         v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
         v13.pNext = with_ray_query ? &acceleration : nullptr;
         v13.synchronization2 = VK_TRUE;
+        v13.dynamicRendering = VK_TRUE;
         v13.maintenance4 = VK_TRUE; // glslang writes specialised workgroup sizes as LocalSizeId
         acceleration.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
         acceleration.pNext = &ray_query;
@@ -42,7 +44,7 @@ struct FeatureChain {
 };
 
 void create_device(Device::State& state) {
-    const FeatureChain chain(state.info.has_ray_query);
+    const FeatureChain chain(state.info.has_ray_query, state.info.has_rasteriser);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

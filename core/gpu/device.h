@@ -38,6 +38,7 @@ struct DeviceInfo {
     std::string uuid_hex;       ///< device UUID + driver version: key for cached decisions
     bool is_cpu = false;        ///< a software implementation
     bool has_ray_query = false; ///< enabled on this device
+    bool has_rasteriser = false; ///< can draw what RasterPass draws
     float timestamp_period_ns = 1.0F;
     std::uint32_t timestamp_bits = 64;
     std::uint32_t max_texel_buffer_elements = 0;

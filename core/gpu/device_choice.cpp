@@ -140,6 +140,17 @@ int preference(VkPhysicalDeviceType type) {
     }
 }
 
+/// Vulkan asks neither for depth buffers of floats nor for pipelines that write some of a target's images; almost every
+/// device has them.
+bool supports_rasteriser(VkPhysicalDevice physical) {
+    VkPhysicalDeviceFeatures features{};
+    vkGetPhysicalDeviceFeatures(physical, &features);
+    VkFormatProperties depth{};
+    vkGetPhysicalDeviceFormatProperties(physical, VK_FORMAT_D32_SFLOAT, &depth);
+    return features.independentBlend == VK_TRUE &&
+           (depth.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+}
+
 DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t queue_family) {
     VkPhysicalDeviceVulkan12Properties v12{};
     v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
@@ -163,6 +174,7 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t queue_family) {
     append_hex(info.uuid_hex, v11.deviceUUID);
     info.uuid_hex.append("-").append(std::to_string(properties.driverVersion));
     info.is_cpu = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    info.has_rasteriser = supports_rasteriser(physical);
     info.timestamp_period_ns = properties.limits.timestampPeriod;
     info.timestamp_bits = families[queue_family].timestampValidBits;
     info.max_texel_buffer_elements = properties.limits.maxTexelBufferElements;

@@ -105,10 +105,10 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.height = frame.height;
     params.page_count = frame.page_count;
     params.source_count = frame.source_count;
-    params.flags = (frame.has_history ? shared::kFlagTemporal : 0) |
-                   (options.is_sharp ? shared::kFlagSharpHistory : 0) |
-                   (options.follows_lobes ? shared::kFlagFollowLobes : 0) | (options.keeps_taps ? shared::kFlagKeepTaps : 0) |
-                   (frame.is_punctual_apart ? shared::kFlagPunctualApart : 0);
+    params.flags =
+        (frame.has_history ? shared::kFlagTemporal : 0) | (options.is_sharp ? shared::kFlagSharpHistory : 0) |
+        (options.follows_lobes ? shared::kFlagFollowLobes : 0) | (options.keeps_taps ? shared::kFlagKeepTaps : 0) |
+        (frame.is_punctual_apart ? shared::kFlagPunctualApart : 0);
     params.alpha = frame.least_weight * options.share;
     params.moments_alpha = frame.least_weight;
     recorder.stage("temporal");

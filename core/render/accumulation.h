@@ -66,8 +66,8 @@ class Accumulation {
 public:
     Accumulation(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// `texel_count`: pixels of all pages. `is_punctual_apart`: light straight from punctual lights has a history of its
-    /// own, short and unlimited, so that the noise of other light does not blur its shadows.
+    /// `texel_count`: pixels of all pages. `is_punctual_apart`: light straight from punctual lights has a history of
+    /// its own, short and unlimited, so that the noise of other light does not blur its shadows.
     void resize(std::uint32_t texel_count, bool is_punctual_apart = false);
     std::uint64_t resize_count() const { return resize_count_; } ///< changes whenever its buffers do
     std::uint32_t texel_count() const { return texel_count_; }

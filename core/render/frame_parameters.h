@@ -31,8 +31,8 @@ inline bool filters_views(const FrameHeader& header) {
     return denoises_views(header) || (header.settings.accumulate_views && header.still_frames == 0);
 }
 
-/// Diffuse light straight from punctual lights is traced, averaged and filtered apart from other light: where the source
-/// is denoised by SVGF+ and each kind of light has a sample of its own.
+/// Diffuse light straight from punctual lights is traced, averaged and filtered apart from other light: where the
+/// source is denoised by SVGF+ and each kind of light has a sample of its own.
 inline bool keeps_punctual_apart(const FrameHeader& header) {
     const RenderSettings& settings = header.settings;
     return settings.denoiser == Denoiser::kSvgfPlus && settings.route == Route::kGreen &&

@@ -8,6 +8,7 @@
 #include "core/render/kernels.h"
 #include "core/render/reflections.h"
 #include "core/render/view_history.h"
+#include "core/render/view_visibility.h"
 #include "core/render/visibility_depth.h"
 
 #include <glm/gtc/packing.hpp>
@@ -57,7 +58,7 @@ struct GridRenderer::State {
     const scene::GpuScene& scene;
     gpu::Recorder recorder;
     gpu::BindingLayout source_layout;
-    gpu::Kernel visibility_kernel;
+    ViewVisibility view_visibility;
     gpu::Kernel interleave_kernel;
     gpu::Kernel reproject_kernel;
     gpu::Kernel finish_kernel;
@@ -97,7 +98,7 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
     : device(d), scene(s), recorder(d),
       source_layout(d, {{shared::kReprojectGeometry, gpu::BindingType::kTexelBuffer, 1},
                         {shared::kReprojectIllumination, gpu::BindingType::kTexelBuffer, 1}}),
-      visibility_kernel(make_scene_kernel(d, s, KernelId::kVisibility, sizeof(shared::VisibilityParams))),
+      view_visibility(d, s),
       interleave_kernel(make_plain_kernel(d, KernelId::kInterleaveSource, sizeof(shared::InterleaveParams))),
       reproject_kernel(
           make_scene_kernel(d, s, KernelId::kReproject, sizeof(shared::ReprojectParams), {&source_layout})),
@@ -181,16 +182,9 @@ void GridRenderer::State::begin_filter(const FrameHeader& header) {
 }
 
 void GridRenderer::State::record_visibility() {
-    shared::VisibilityParams params{};
-    params.cameras = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
-    params.visibility = visibility.address();
-    params.layers = layers.address();
-    params.width = request.width_px;
-    params.height = request.height_px;
-    params.view_count = view_count();
     recorder.stage("views_visibility");
-    recorder.dispatch(visibility_kernel, {&scene.bindings()}, params,
-                      {gpu::groups_for(params.width, 8), gpu::groups_for(params.height, 8), params.view_count});
+    const std::uint64_t records = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
+    view_visibility.record(recorder, {view_cameras, records, &visibility, &layers});
 }
 
 void GridRenderer::State::record_interleave(const SourcePlanes& source) {
@@ -265,7 +259,8 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     shared::TraceListParams params = list_params(header);
     params.list = layer_pixels.address();
     recorder.stage("layers");
-    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers}, {1, 1, 1});
+    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers},
+                      {1, 1, 1});
     recorder.barrier();
     recorder.dispatch_indirect(layers_kernel, {&scene.bindings(), &source_set}, params, counters,
                                (shared::kCounterLayers + 1) * 4);

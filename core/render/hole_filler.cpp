@@ -172,7 +172,8 @@ void HoleFiller::fill(gpu::Recorder& recorder, const FrameHeader& header, const 
     trace_list(recorder, targets, params, shared::kCounterFirstHoles);
     if (!batch_.corners.empty()) {
         recorder.stage("cascade_holes");
-        recorder.dispatch(finish_, {}, shared::FinishListParams{params.counters, shared::kCounterInnerHoles}, {1, 1, 1});
+        recorder.dispatch(finish_, {}, shared::FinishListParams{params.counters, shared::kCounterInnerHoles},
+                          {1, 1, 1});
         recorder.barrier();
         recorder.dispatch_indirect(cascade_, sets, params, targets.counters, (shared::kCounterInnerHoles + 1) * 4);
         recorder.barrier();

@@ -37,8 +37,8 @@ struct HoleHistory {
     const Frame& before() const { return frames[1 - current]; }
 };
 
-/// Fills the pixels that no source pixel could be reused for (settings.holes says how). Reprojection marks them in a map
-/// of one bit per pixel; the rest works on arrays that hold only holes, in the order of the map.
+/// Fills the pixels that no source pixel could be reused for (settings.holes says how). Reprojection marks them in a
+/// map of one bit per pixel; the rest works on arrays that hold only holes, in the order of the map.
 class HoleFiller {
 public:
     /// Binding set 1 of all its kernels has `source_layout`.
@@ -51,7 +51,8 @@ public:
         std::uint32_t width = 0;
         std::uint32_t height = 0;
         std::uint32_t view_count = 0;
-        std::vector<std::uint32_t> corners{}; ///< indices of the cascade's corner views, at most four; empty: no cascade
+        std::vector<std::uint32_t>
+            corners{}; ///< indices of the cascade's corner views, at most four; empty: no cascade
     };
 
     /// Makes room and records clearing of the map, in which reprojection then marks holes. `cameras`: CameraRecords of
@@ -71,7 +72,8 @@ public:
 
     /// Numbers the holes and submits the recorder, since their count decides how large arrays must be; `times` gets the
     /// stages so far. Then records the filling of `targets.radiance` or `targets.light`.
-    void fill(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets, std::vector<StageTime>& times);
+    void fill(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
+              std::vector<StageTime>& times);
 
     /// What the counters of the batch say once all is done.
     static HoleCounts counts(const std::vector<std::uint32_t>& counters);

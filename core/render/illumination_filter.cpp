@@ -4,8 +4,8 @@
 namespace fieldcast::render {
 
 IlluminationFilter::IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene)
-    : accumulation_(device, scene), svgf_(device, accumulation_), bmfr_(device, accumulation_), punctual_(device, accumulation_),
-      result_(&accumulation_.noisy()) {}
+    : accumulation_(device, scene), svgf_(device, accumulation_), bmfr_(device, accumulation_),
+      punctual_(device, accumulation_), result_(&accumulation_.noisy()) {}
 
 void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     if (frame.is_still || frame.settings.denoiser != Denoiser::kBmfr) {

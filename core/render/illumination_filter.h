@@ -12,8 +12,8 @@ class IlluminationFilter {
 public:
     IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// `texel_count`: pixels of all pages. `is_punctual_apart`: the path tracer writes diffuse light that comes straight
-    /// from punctual lights to `noisy_punctual()`; only for SVGF+.
+    /// `texel_count`: pixels of all pages. `is_punctual_apart`: the path tracer writes diffuse light that comes
+    /// straight from punctual lights to `noisy_punctual()`; only for SVGF+.
     void resize(std::uint32_t texel_count, bool is_punctual_apart = false) {
         accumulation_.resize(texel_count, is_punctual_apart);
     }

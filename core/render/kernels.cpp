@@ -7,14 +7,20 @@
 #include "shaders/composite_layers_bvh.spv.h"
 #include "shaders/composite_layers_rayquery.spv.h"
 #include "shaders/count_holes.spv.h"
+#include "shaders/draw_blend_frag.spv.h"
+#include "shaders/draw_visibility_frag.spv.h"
+#include "shaders/draw_visibility_vert.spv.h"
 #include "shaders/filter_holes.spv.h"
 #include "shaders/filter_punctual.spv.h"
+#include "shaders/find_layers_bvh.spv.h"
+#include "shaders/find_layers_rayquery.spv.h"
 #include "shaders/finish_list.spv.h"
 #include "shaders/interleave_source.spv.h"
 #include "shaders/keep_holes.spv.h"
 #include "shaders/limit_history.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/merge_light.spv.h"
+#include "shaders/name_triangles.spv.h"
 #include "shaders/pack_source.spv.h"
 #include "shaders/reflect_views_bvh.spv.h"
 #include "shaders/reflect_views_rayquery.spv.h"
@@ -66,12 +72,14 @@ const EmbeddedKernel kKernels[] = {
     {KernelId::kCountHoles, "count_holes", count_holes_spv, count_holes_spv},
     {KernelId::kFilterHoles, "filter_holes", filter_holes_spv, filter_holes_spv},
     {KernelId::kFilterPunctual, "filter_punctual", filter_punctual_spv, filter_punctual_spv},
+    {KernelId::kFindLayers, "find_layers", find_layers_bvh_spv, find_layers_rayquery_spv},
     {KernelId::kFinishList, "finish_list", finish_list_spv, finish_list_spv},
     {KernelId::kInterleaveSource, "interleave_source", interleave_source_spv, interleave_source_spv},
     {KernelId::kKeepHoles, "keep_holes", keep_holes_spv, keep_holes_spv},
     {KernelId::kLimitHistory, "limit_history", limit_history_spv, limit_history_spv},
     {KernelId::kListHoles, "list_holes", list_holes_spv, list_holes_spv},
     {KernelId::kMergeLight, "merge_light", merge_light_spv, merge_light_spv},
+    {KernelId::kNameTriangles, "name_triangles", name_triangles_spv, name_triangles_spv},
     {KernelId::kPackSource, "pack_source", pack_source_spv, pack_source_spv},
     {KernelId::kReflectViews, "reflect_views", reflect_views_bvh_spv, reflect_views_rayquery_spv},
     {KernelId::kReproject, "reproject", reproject_spv, reproject_spv},
@@ -101,6 +109,18 @@ gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal) {
     const auto kernel = std::ranges::find(kKernels, id, &EmbeddedKernel::id);
     FC_ASSERT(kernel != std::end(kKernels), "unknown kernel");
     return {kernel->name, traversal == scene::Traversal::kBvh ? kernel->bvh : kernel->ray_query};
+}
+
+gpu::RasterCode raster_code(RasterId id) {
+    const gpu::KernelCode vertex{"draw_visibility_vert", draw_visibility_vert_spv};
+    switch (id) {
+    case RasterId::kDrawBlend:
+        return {vertex, {"draw_blend_frag", draw_blend_frag_spv}};
+    case RasterId::kDrawVisibility:
+        return {vertex, {"draw_visibility_frag", draw_visibility_frag_spv}};
+    }
+    FC_ASSERT(false, "unknown shaders");
+    return {};
 }
 
 gpu::Kernel make_scene_kernel(const gpu::Device& device, const scene::GpuScene& scene, KernelId id,

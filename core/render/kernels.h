@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/kernel.h"
+#include "core/gpu/raster_pipeline.h"
 #include "core/scene/gpu_scene.h"
 
 namespace fieldcast::render {
@@ -14,12 +14,14 @@ enum class KernelId {
     kCountHoles,
     kFilterHoles,
     kFilterPunctual,
+    kFindLayers,
     kFinishList,
     kInterleaveSource,
     kKeepHoles,
     kLimitHistory,
     kListHoles,
     kMergeLight,
+    kNameTriangles,
     kPackSource,
     kReflectViews,
     kReproject,
@@ -43,6 +45,10 @@ enum class KernelId {
     kWarpUnpack,
     kWarpViews,
 };
+
+/// The embedded pairs of shaders that draw (shaders/*.vert, *.frag).
+enum class RasterId { kDrawBlend, kDrawVisibility };
+gpu::RasterCode raster_code(RasterId id);
 
 /// Code of a kernel, in the variant for `traversal` if it traces rays.
 gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal);

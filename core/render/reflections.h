@@ -8,8 +8,9 @@
 
 namespace fieldcast::render {
 
-/// What smooth surfaces mirror, looked up anew in every view: their light depends on the viewer, and reprojected with the
-/// surface it would look painted on. Reprojection lists their pixels; one ray from each finds what is mirrored there.
+/// What smooth surfaces mirror, looked up anew in every view: their light depends on the viewer, and reprojected with
+/// the surface it would look painted on. Reprojection lists their pixels; one ray from each finds what is mirrored
+/// there.
 class Reflections {
 public:
     /// Binding set 1 of the kernel has `source_layout`.

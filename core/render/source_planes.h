@@ -11,16 +11,17 @@
 namespace fieldcast::render {
 
 /// All planes of a SourceFrame, in the order of their semantics.
-inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
-                                             PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
+inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular,
+                                             PlaneSemantic::kDepth,   PlaneSemantic::kNormal,
+                                             PlaneSemantic::kId,      PlaneSemantic::kMaterial};
 
 /// The format in which a source plane is kept on the device and on the wire.
 PlaneFormat source_format(PlaneSemantic semantic);
 
 /// A SourceFrame on the device, in wire precision: what views are made from on both sides.
 /// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). Every plane has all pages (lightfield's
-/// page_count()), one after the other; of the G-buffer planes those of layers do not travel: who holds the scene can make
-/// them.
+/// page_count()), one after the other; of the G-buffer planes those of layers do not travel: who holds the scene can
+/// make them.
 class SourcePlanes {
 public:
     explicit SourcePlanes(const gpu::Device& device);
@@ -31,8 +32,8 @@ public:
     /// Copies planes to the host (the wire's SourceFrame).
     SourceFrame download(std::span<const PlaneSemantic> wanted) const;
 
-    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format. Normals may
-    /// be kOct2x8; kTotalLight becomes both kDiffuse and kSpecular.
+    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format. Normals
+    /// may be kOct2x8; kTotalLight becomes both kDiffuse and kSpecular.
     Decoded<bool> upload(const SourceFrame& frame);
 
     const FrameHeader& header() const { return header_; }

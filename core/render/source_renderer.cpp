@@ -80,7 +80,8 @@ std::uint32_t SourceRenderer::State::still_frames(const FrameHeader& header) con
 void SourceRenderer::State::upload_cameras() {
     const std::vector<Camera> now = source_cameras(planes);
     std::vector<shared::CameraRecord> records = make_camera_records(now);
-    const std::vector<shared::CameraRecord> before = make_camera_records(previous.size() == now.size() ? previous : now);
+    const std::vector<shared::CameraRecord> before =
+        make_camera_records(previous.size() == now.size() ? previous : now);
     records.insert(records.end(), before.begin(), before.end());
     gpu::write_buffer(device, cameras, std::as_bytes(std::span(records)));
 }

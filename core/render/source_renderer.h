@@ -15,8 +15,9 @@ public:
     SourceRenderer(const gpu::Device& device, const scene::GpuScene& scene);
     ~SourceRenderer();
 
-    /// Renders the frame described by `header` (everything but render_times, layer_count and still_frames is input) with the scene as it is posed
-    /// now. The result stays valid until the next call; its header carries the stage times.
+    /// Renders the frame described by `header` (everything but render_times, layer_count and still_frames is input)
+    /// with the scene as it is posed now. The result stays valid until the next call; its header carries the stage
+    /// times.
     const SourcePlanes& render(const FrameHeader& header);
 
     /// The illumination of the last frame as one plane, kTotalLight. Blocks.

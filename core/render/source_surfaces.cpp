@@ -28,8 +28,9 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     visible.height = widened.height_px;
     visible.view_count = planes.source_count();
     recorder.stage("source_visibility");
-    recorder.dispatch(trace_, {&scene_.bindings()}, visible,
-                      {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), visible.view_count});
+    recorder.dispatch(
+        trace_, {&scene_.bindings()}, visible,
+        {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), visible.view_count});
     recorder.barrier();
 
     shared::SourceSurfacesParams params{};

@@ -13,9 +13,10 @@ class SourceSurfaces {
 public:
     SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// Records visibility and surfaces for all pages of `planes` (sized for its header). `cameras` is the device address
-    /// of the sources' CameraRecords; `geometry` a buffer of GeometryTexel.
-    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras, const gpu::Buffer& geometry);
+    /// Records visibility and surfaces for all pages of `planes` (sized for its header). `cameras` is the device
+    /// address of the sources' CameraRecords; `geometry` a buffer of GeometryTexel.
+    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
+                const gpu::Buffer& geometry);
 
     const gpu::Buffer& visibility() const { return visibility_; }
     const gpu::Buffer& layers() const { return layers_; }

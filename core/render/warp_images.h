@@ -8,8 +8,8 @@
 
 namespace fieldcast::render {
 
-/// The images that a WarpRenderer searches, on the device: the source with its guard band, and the views of the residual
-/// layer, of which only tiles are known.
+/// The images that a WarpRenderer searches, on the device: the source with its guard band, and the views of the
+/// residual layer, of which only tiles are known.
 class WarpImages {
 public:
     explicit WarpImages(const gpu::Device& device);

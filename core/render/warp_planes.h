@@ -35,12 +35,12 @@ private:
     WarpRenderer warp_;
 };
 
-/// Corners of `grid` in the order in which their tiles are chosen: opposite ones follow each other, since later views need
-/// tiles only for what earlier ones do not show. Without the source's own position (0, 0).
+/// Corners of `grid` in the order in which their tiles are chosen: opposite ones follow each other, since later views
+/// need tiles only for what earlier ones do not show. Without the source's own position (0, 0).
 std::vector<LatticePosition> residual_positions(const ViewGrid& grid);
 
-/// Step of inverse depth, 1/m, with which no pixel of a view of `grid` moves by more than 1/64 pixel; at least what 16 bits
-/// need for `nearest_m`.
+/// Step of inverse depth, 1/m, with which no pixel of a view of `grid` moves by more than 1/64 pixel; at least what 16
+/// bits need for `nearest_m`.
 float choose_inverse_depth_unit(const Camera& source, const ViewGrid& grid, float nearest_m);
 
 /// Plane of `semantic` from view depth in metres (infinity: nothing), `width_px` pixels to a row.

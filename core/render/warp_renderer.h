@@ -27,8 +27,8 @@ public:
     explicit WarpRenderer(const gpu::Device& device);
     ~WarpRenderer();
 
-    /// Takes planes kColour and kInverseDepth of a frame with one source, and its residual layer if it has one. Fails if
-    /// they are not there, or do not fit the header.
+    /// Takes planes kColour and kInverseDepth of a frame with one source, and its residual layer if it has one. Fails
+    /// if they are not there, or do not fit the header.
     Decoded<void> upload(const SourceFrame& frame);
 
     /// Views in the order of `request.positions`. Their discard counts say how much was extended: out_of_frustum

@@ -2,12 +2,11 @@
 #include "core/scene/bvh.h"
 
 #include "core/base/error.h"
+#include "core/scene/rigid_groups.h"
 #include "shaders/shared/scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <map>
 #include <string>
 
 namespace fieldcast::scene {
@@ -18,37 +17,6 @@ constexpr std::uint64_t kManyTriangles = 8ULL << 20;
 constexpr std::uint64_t kMuchSharing = 4;
 /// Boxes grow by this part of the largest coordinate: the kernel's rounding of origin − plane, with a margin.
 constexpr float kPadding = 0x1p-21F;
-
-glm::mat4 local_transform(const Node& node) {
-    if (node.matrix) {
-        return *node.matrix;
-    }
-    const glm::mat4 translated = glm::translate(glm::mat4(1.0F), node.translation);
-    return glm::scale(translated * glm::mat4_cast(node.rotation), node.scale);
-}
-
-/// For every node the nearest one, itself or above, that an animation channel moves; kNone if it stands still.
-std::vector<std::uint32_t> movers(const Scene& scene) {
-    std::vector<std::uint32_t> mover(scene.nodes.size(), kNone);
-    for (const AnimationChannel& channel : scene.channels) {
-        mover[channel.node] = channel.node;
-    }
-    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        const std::uint32_t parent = scene.nodes[i].parent;
-        if (mover[i] == kNone && parent != kNone) {
-            mover[i] = mover[parent];
-        }
-    }
-    return mover;
-}
-
-glm::mat4 mover_from_node(const Scene& scene, std::uint32_t mover, std::uint32_t node) {
-    glm::mat4 result(1.0F);
-    for (; node != mover; node = scene.nodes[node].parent) {
-        result = local_transform(scene.nodes[node]) * result;
-    }
-    return result;
-}
 
 std::uint32_t alpha_flags(const Material& material) {
     return static_cast<std::uint32_t>(material.alpha_mode) |
@@ -136,19 +104,12 @@ Bvh::Bvh(const Scene& scene, const ScenePose& pose, const BvhOptions& options) {
 }
 
 void Bvh::flatten(const Scene& scene, const ScenePose& pose) {
-    const std::vector<std::uint32_t> mover = movers(scene);
-    std::map<std::uint32_t, std::uint32_t> level_of_mover;
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const std::uint32_t node = mover[instance.node];
-        const auto [found, is_new] = level_of_mover.try_emplace(node, bottom_level_count());
-        if (is_new) {
-            levels_.emplace_back();
-            placements_.push_back({found->second, node, 0});
+    for (const RigidGroup& group : rigid_groups(scene, pose)) {
+        placements_.push_back({bottom_level_count(), group.node, 0});
+        BottomLevel& level = levels_.emplace_back();
+        for (const RigidPart& part : group.parts) {
+            level.parts.push_back({scene.instances[part.instance].mesh, part.instance, part.group_from_object});
         }
-        const glm::mat4 transform =
-            node == kNone ? pose.world_from_node[instance.node] : mover_from_node(scene, node, instance.node);
-        levels_[found->second].parts.push_back({instance.mesh, i, transform});
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/acceleration.h"
+#include "core/scene/bvh.h"
 #include "core/scene/ggx_albedo.h"
 #include "core/scene/scene_records.h"
 
@@ -96,6 +97,8 @@ struct GpuScene::State {
     bool has_blend;
     bool has_glossy;
     gpu::Texture environment;
+    VisibilityMethod visibility = VisibilityMethod::kRays;
+    std::optional<DrawGeometry> drawn;
     std::array<TexelArray, 16> arrays; ///< by binding
 };
 
@@ -154,9 +157,18 @@ void GpuScene::State::upload_instances(const ScenePose& previous) {
 }
 
 GpuScene::GpuScene(const gpu::Device& device, const Scene& scene, Traversal traversal)
+    : GpuScene(device, scene, traversal, choose_visibility(device, "auto")) {}
+
+GpuScene::GpuScene(const gpu::Device& device, const Scene& scene, Traversal traversal, VisibilityMethod visibility)
     : state_(std::make_unique<State>(device, scene, traversal)) {
     state_->upload_static();
     state_->upload_instances(state_->pose);
+    // Drawing flattens instances; where they share their meshes to save memory, that is lost.
+    const bool is_too_much = visibility == VisibilityMethod::kFaster && should_share_meshes(scene);
+    state_->visibility = is_too_much ? VisibilityMethod::kRays : visibility;
+    if (state_->visibility != VisibilityMethod::kRays) {
+        state_->drawn.emplace(device, scene, state_->pose);
+    }
 }
 
 GpuScene::~GpuScene() = default;
@@ -187,6 +199,15 @@ const Scene& GpuScene::scene() const {
 Traversal GpuScene::traversal() const {
     return state_->traversal;
 }
+float GpuScene::radius_m() const {
+    return state_->records.radius_m;
+}
+VisibilityMethod GpuScene::visibility() const {
+    return state_->visibility;
+}
+const DrawGeometry* GpuScene::draw_geometry() const {
+    return state_->drawn ? &*state_->drawn : nullptr;
+}
 const gpu::BindingLayout& GpuScene::layout() const {
     return state_->layout;
 }
@@ -211,6 +232,9 @@ std::uint64_t GpuScene::device_bytes() const {
     std::uint64_t bytes = state_->textures.device_bytes() + state_->acceleration.statistics().device_bytes;
     for (const TexelArray& array : state_->arrays) {
         bytes += array.buffer.size_bytes();
+    }
+    if (state_->drawn) {
+        bytes += state_->drawn->device_bytes();
     }
     return bytes;
 }

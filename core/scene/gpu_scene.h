@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gpu/kernel.h"
-#include "core/scene/scene.h"
+#include "core/scene/draw_geometry.h"
 
 #include <memory>
 #include <string>
@@ -16,11 +16,21 @@ enum class Traversal : std::uint8_t { kBvh, kRayQuery };
 /// UserError if what was asked for cannot be had.
 Traversal choose_traversal(const gpu::Device& device, const std::string& wish);
 
+/// How it is found what views see: by rays, by a rasteriser that draws the triangles into each view, or by what should be
+/// faster for these views of this scene. Sources are always traced, so that who rebuilds their surfaces gets the same
+/// bits.
+enum class VisibilityMethod : std::uint8_t { kRays, kRaster, kFaster };
+
+/// Reads "rays" | "raster" | "auto": what is faster on a CPU, rays elsewhere (docs/decisions/views-are-drawn.md). Throws
+/// UserError if what was asked for cannot be had.
+VisibilityMethod choose_visibility(const gpu::Device& device, const std::string& wish);
+
 /// A scene on a Vulkan device: descriptor set 0 of every kernel that looks at surfaces (shaders/shared/scene.h).
-/// `scene` must outlive it.
+/// `scene` must outlive it. Unless it is said how, views are made visible as choose_visibility() does for "auto".
 class GpuScene {
 public:
     GpuScene(const gpu::Device& device, const Scene& scene, Traversal traversal);
+    GpuScene(const gpu::Device& device, const Scene& scene, Traversal traversal, VisibilityMethod visibility);
     ~GpuScene();
     GpuScene(const GpuScene&) = delete;
     GpuScene& operator=(const GpuScene&) = delete;
@@ -35,6 +45,9 @@ public:
     const ScenePose& current_pose() const;
     const Scene& scene() const;
     Traversal traversal() const;
+    float radius_m() const; ///< of the sphere around everything, as placed when loaded
+    VisibilityMethod visibility() const;
+    const DrawGeometry* draw_geometry() const; ///< null: views are always traced
     const gpu::BindingLayout& layout() const;
     const gpu::BindingSet& bindings() const;
     bool has_blend() const;  ///< some material is BLEND

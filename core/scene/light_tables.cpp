@@ -132,7 +132,8 @@ double add_lights(const Scene& scene, double radius_m, LightTables& tables) {
         total += light_power(light, radius_m);
     }
     for (const Light& light : scene.lights) {
-        tables.light_probability.push_back(static_cast<float>(total > 0.0 ? light_power(light, radius_m) / total : 0.0));
+        tables.light_probability.push_back(
+            static_cast<float>(total > 0.0 ? light_power(light, radius_m) / total : 0.0));
     }
     return total;
 }

@@ -46,13 +46,15 @@ std::vector<std::byte> resampled(const Image& image, std::uint32_t side) {
             image.rgba[(static_cast<std::size_t>(y % image.height_px) * image.width_px + x % image.width_px) * 4 + c]);
     };
     for (std::uint32_t y = 0; y < side; ++y) {
-        const float v = (static_cast<float>(y) + 0.5F) * static_cast<float>(image.height_px) / static_cast<float>(side) +
-                        static_cast<float>(image.height_px) - 0.5F;
+        const float v =
+            (static_cast<float>(y) + 0.5F) * static_cast<float>(image.height_px) / static_cast<float>(side) +
+            static_cast<float>(image.height_px) - 0.5F;
         const auto y0 = static_cast<std::uint32_t>(v);
         const float fy = v - static_cast<float>(y0);
         for (std::uint32_t x = 0; x < side; ++x) {
-            const float u = (static_cast<float>(x) + 0.5F) * static_cast<float>(image.width_px) / static_cast<float>(side) +
-                            static_cast<float>(image.width_px) - 0.5F;
+            const float u =
+                (static_cast<float>(x) + 0.5F) * static_cast<float>(image.width_px) / static_cast<float>(side) +
+                static_cast<float>(image.width_px) - 0.5F;
             const auto x0 = static_cast<std::uint32_t>(u);
             const float fx = u - static_cast<float>(x0);
             for (std::uint32_t c = 0; c < 4; ++c) {
@@ -113,8 +115,8 @@ void TextureArrays::upload(const gpu::Device& device, const Scene& scene, std::u
     }
     const std::uint32_t side = sides_[array];
     if (side > device.info().max_image_side || images_[array].size() > device.info().max_image_layers) {
-        throw UserError(scene.name + ": " + std::to_string(images_[array].size()) + " images of " + std::to_string(side) +
-                        " pixels: more or larger than this device can hold in one array");
+        throw UserError(scene.name + ": " + std::to_string(images_[array].size()) + " images of " +
+                        std::to_string(side) + " pixels: more or larger than this device can hold in one array");
     }
     resized.reserve(images_[array].size());
     for (const std::uint32_t index : images_[array]) {

@@ -25,13 +25,14 @@ FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& confi
 FrameRenderer::FrameRenderer(const gpu::Device& device, const ops::Config& config, const SettledChannel& settled)
     : device_(device), config_(config), scene_(settled.scene), camera_node_(settled.camera_node),
       fixed_camera_(settled.fixed_camera), settings_(settled.settings), info_(settled.info) {
-    make_renderers(settled.traversal);
+    make_renderers(settled.traversal, settled.visibility);
 }
 
 SettledChannel FrameRenderer::settled() const {
     return {.scene = scene_,
             .camera_node = camera_node_,
             .traversal = gpu_scene_->traversal(),
+            .visibility = gpu_scene_->visibility(),
             .fixed_camera = fixed_camera_,
             .settings = settings_,
             .info = info_};
@@ -52,11 +53,12 @@ void FrameRenderer::load(const ops::ChannelChoice& channel) {
     }
     info_.scene_hash = scene_->hash;
     info_.bundle = std::make_shared<const std::vector<std::byte>>(scene::make_bundle(channel.scene, options));
-    make_renderers(scene::choose_traversal(device_, config_.traversal));
+    make_renderers(scene::choose_traversal(device_, config_.traversal),
+                   scene::choose_visibility(device_, config_.visibility));
 }
 
-void FrameRenderer::make_renderers(scene::Traversal traversal) {
-    gpu_scene_ = std::make_unique<scene::GpuScene>(device_, *scene_, traversal);
+void FrameRenderer::make_renderers(scene::Traversal traversal, scene::VisibilityMethod visibility) {
+    gpu_scene_ = std::make_unique<scene::GpuScene>(device_, *scene_, traversal, visibility);
     source_renderer_ = std::make_unique<render::SourceRenderer>(device_, *gpu_scene_);
     grid_renderer_ = std::make_unique<render::GridRenderer>(device_, *gpu_scene_);
 }

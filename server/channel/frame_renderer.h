@@ -45,6 +45,7 @@ struct SettledChannel {
     std::shared_ptr<const scene::Scene> scene;
     const scene::CameraNode* camera_node = nullptr; ///< in `scene`
     scene::Traversal traversal = scene::Traversal::kBvh;
+    scene::VisibilityMethod visibility = scene::VisibilityMethod::kRays;
     std::optional<Camera> fixed_camera; ///< where it stands if it does not follow its node
     RenderSettings settings;            ///< the exposure too
     feed::ChannelInfo info;
@@ -58,8 +59,8 @@ public:
     /// Throws UserError if the scene is not usable.
     FrameRenderer(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel);
 
-    /// Shares the scene that is loaded, and has everything on the device for itself. `settled` may come from a renderer that
-    /// has gone.
+    /// Shares the scene that is loaded, and has everything on the device for itself. `settled` may come from a renderer
+    /// that has gone.
     FrameRenderer(const gpu::Device& device, const ops::Config& config, const SettledChannel& settled);
 
     SettledChannel settled() const;
@@ -68,8 +69,8 @@ public:
 
     RenderedFrame render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand);
 
-    /// Linear radiance of one view, path traced with `samples` per pixel, nothing reused, no limits. `progress` gets the
-    /// samples so far; true: stop, and the result is empty.
+    /// Linear radiance of one view, path traced with `samples` per pixel, nothing reused, no limits. `progress` gets
+    /// the samples so far; true: stop, and the result is empty.
     std::optional<image::RgbF32> path_trace(const FrameMoment& moment, LatticePosition position, std::uint32_t samples,
                                             const std::function<bool(std::uint32_t)>& progress);
 
@@ -78,7 +79,7 @@ public:
 
 private:
     void load(const ops::ChannelChoice& channel);
-    void make_renderers(scene::Traversal traversal);
+    void make_renderers(scene::Traversal traversal, scene::VisibilityMethod visibility);
     void settle_lattice(const ops::ChannelChoice& choice);
     void limit_views();
     void settle_guard_band();

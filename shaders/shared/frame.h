@@ -41,6 +41,32 @@ struct VisibilityParams {
     uint unused;
 };
 
+// draw_visibility.vert, .frag: triangles of one rigid group in one view.
+struct DrawParams {
+    mat4 clip_from_group;
+    CameraBuffer camera;        // of the view, at 0
+    VisibilityBuffer triangles; // by number
+};
+
+// name_triangles.comp: from the numbers of triangles that were drawn to what pixels see.
+struct NameTrianglesParams {
+    UintBuffer numbers;          // view_count × view_stride()
+    VisibilityBuffer triangles;
+    VisibilityBuffer visibility; // out
+    uint pixel_count;
+    uint triangle_count;
+};
+
+// find_layers.comp: the layers of VisibilityParams for views that were drawn.
+struct FindLayersParams {
+    CameraBuffer cameras;
+    VisibilityBuffer visibility;
+    VisibilityBuffer layers; // out
+    UintBuffer marks;        // a byte per pixel, 1: it may have layers
+    uint width;
+    uint height;
+};
+
 // Sources have pages (core/lightfield/source_frame.h): page layer · source_count + source. Layer 0 is what pixels see
 // (Visibility), layers 1 and 2 are the BLEND surfaces in front of that, nearest first; only scenes with BLEND surfaces
 // have them. Arrays over the sources hold one page after the other.
@@ -71,7 +97,7 @@ struct TraceSourceParams {
     VisibilityBuffer layers;
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
     Vec4Buffer specular;         // out
-    Vec4Buffer punctual;         // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
+    Vec4Buffer punctual; // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
     UintBuffer invalid_samples;  // counter
     Uvec4Buffer previous_geometry; // with kPathEndsInHistory: GeometryTexel of the frame before
     UintBuffer previous_diffuse;   // … and its wire planes
@@ -130,7 +156,8 @@ struct MergeLightParams {
     uint source_count;
 };
 
-// What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness | metallic.
+// What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness |
+// metallic.
 struct GeometryTexel {
     float depth;
     uint normal;
@@ -249,7 +276,8 @@ struct ViewRecord {
 };
 SHARED_BUFFER(ViewBuffer, ViewRecord);
 
-// Counters of a batch of views: lists (length, then the group counts of an indirect dispatch), events, kDiscard… per view.
+// Counters of a batch of views: lists (length, then the group counts of an indirect dispatch), events, kDiscard… per
+// view.
 const uint kCounterHoles = 0;
 const uint kCounterLayers = 4;          // pixels behind BLEND surfaces
 const uint kCounterFirstHoles = 8;      // holes to be traced first: of corner views, or all of them

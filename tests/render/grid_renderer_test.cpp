@@ -109,8 +109,8 @@ TEST_F(GridRendererTest, SeveralSourcesShowMoreAndTheSameLight) {
         before = now;
         for (const std::size_t index : {0UL, 14UL, 35UL}) {
             const LinearView view = s.grid.linear_view(index);
-            s.reference.start(view_camera(camera, request.geometry, request.positions[index], vertical_fov(camera), kWidth,
-                                          kHeight));
+            s.reference.start(
+                view_camera(camera, request.geometry, request.positions[index], vertical_fov(camera), kWidth, kHeight));
             s.reference.accumulate(header.settings, 1);
             const Difference difference = compare(view.pixels, s.reference.image(), kWidth, kHeight);
             EXPECT_LT(difference.worst_block, 1.0 / 8.0) << index; // as for one source below

@@ -81,9 +81,9 @@ TEST_F(HoleFillingTest, StagesKeepTheLightOfANoiselessScene) {
         render_with(s.grid, only(stages));
         const HoleError error = error_of(s.grid, exact);
         EXPECT_GT(error.holes, 1000U);
-        // At the picture's border all neighbours of a hole lie on one side, and the filter's centre of gravity 1.4 px (its
-        // deviation) inside; in so small a picture the point light falls off by up to 7 % per pixel. The other stages
-        // look for the very surface point.
+        // At the picture's border all neighbours of a hole lie on one side, and the filter's centre of gravity 1.4 px
+        // (its deviation) inside; in so small a picture the point light falls off by up to 7 % per pixel. The other
+        // stages look for the very surface point.
         const double limit = std::string(stages) == "denoise" ? 1.4 * 0.07 : 0.02;
         EXPECT_LT(std::abs(error.bias), limit * mean);
         EXPECT_LT(error.rmse, std::sqrt(0.1) * mean); // one hole in ten across a shadow's edge
@@ -101,7 +101,8 @@ TEST_F(HoleFillingTest, StagesTraceFewerPathsAndLeaveLessError) {
     const HoleCounts all = traced.hole_counts();
     EXPECT_EQ(all.traced, all.holes);
     const double noise = error_of(traced, converged).rmse;
-    for (const char* const stages : {"cascade", "source", "denoise", "cascade,denoise", "isolated,cascade,source,denoise"}) {
+    for (const char* const stages :
+         {"cascade", "source", "denoise", "cascade,denoise", "isolated,cascade,source,denoise"}) {
         SCOPED_TRACE(stages);
         GridRenderer grid(device(), s.gpu_scene);
         render(s, grid, only(stages));
@@ -127,8 +128,8 @@ TEST_F(HoleFillingTest, PathsThatEndInTheSourceHaveTheSameMean) {
     render(s, ended, only("source"), 0, true, samples);
     const HoleError error = error_of(ended, traced);
     EXPECT_GT(error.holes, 1000U);
-    // The mean over more than 1000 holes of 256 samples is known to 1 / √256 000 of a pixel's standard deviation, which is
-    // below ten times the mean: 2 %. Taps between source pixels blur, but neither add nor take light.
+    // The mean over more than 1000 holes of 256 samples is known to 1 / √256 000 of a pixel's standard deviation, which
+    // is below ten times the mean: 2 %. Taps between source pixels blur, but neither add nor take light.
     EXPECT_LT(std::abs(error.bias), 0.03 * error.mean);
     RecordProperty("bias", std::to_string(error.bias / error.mean));
 }

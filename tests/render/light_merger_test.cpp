@@ -26,7 +26,8 @@ protected:
         SourcePlanes planes(device());
         EXPECT_TRUE(planes.upload(frame).has_value());
         const LatticeGeometry geometry{{0.06F, 0.06F}};
-        views_ = s.grid.render(planes, grid_request(frame.header.source, 2, 2, geometry)); // the first is the source's own
+        views_ =
+            s.grid.render(planes, grid_request(frame.header.source, 2, 2, geometry)); // the first is the source's own
         return s.grid.linear_view(0).pixels;
     }
 

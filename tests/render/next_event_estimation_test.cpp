@@ -96,8 +96,9 @@ TEST_F(NextEventEstimationTest, CandidatesLowerTheVarianceOfManyLights) {
     }
     const Camera camera = look_at({0, 5.0F, 0.5F}, {0, 0, 0}, 0.8F, 24, 16);
     const auto variance = [&](std::uint32_t candidates) {
-        const Estimate image = path_trace(builder.scene(), camera,
-                                          {.samples = 4, .renders = 16, .max_bounces = 1, .light_sampling = {candidates, false}});
+        const Estimate image =
+            path_trace(builder.scene(), camera,
+                       {.samples = 4, .renders = 16, .max_bounces = 1, .light_sampling = {candidates, false}});
         double sum = 0.0;
         for (const glm::dvec3& v : image.variance) {
             sum += v.y;

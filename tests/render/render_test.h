@@ -40,10 +40,11 @@ struct PathTracing {
 /// Tests of renderers on the best device of this machine; skips without one, fails on validation messages.
 class RenderTest : public gpu::GpuTest {
 public:
-    /// Shows a scene in one renderer of each kind.
+    /// Shows a scene in one renderer of each kind. Views are traced, as their references are: in rooms that are symmetric
+    /// about the camera, whole rows of pixels have their centres on edges, where drawing may see the other side.
     struct Stage {
         Stage(const gpu::Device& device, scene::Scene shown, scene::Traversal traversal)
-            : scene(std::move(shown)), gpu_scene(device, scene, traversal), source(device, gpu_scene),
+            : scene(std::move(shown)), gpu_scene(device, scene, traversal, scene::VisibilityMethod::kRays), source(device, gpu_scene),
               grid(device, gpu_scene), reference(device, gpu_scene) {}
         scene::Scene scene;
         scene::GpuScene gpu_scene;

@@ -309,7 +309,8 @@ std::vector<glm::vec3> light_after_a_good_frame(SourceRenderer& renderer, std::u
 }
 
 /// What only paths of more than one bounce have: those of the same numbers see the same light at their first surface.
-std::vector<glm::vec3> indirect_after_a_good_frame(SourceRenderer& renderer, std::uint32_t samples, bool history_light) {
+std::vector<glm::vec3> indirect_after_a_good_frame(SourceRenderer& renderer, std::uint32_t samples,
+                                                   bool history_light) {
     std::vector<glm::vec3> light = light_after_a_good_frame(renderer, samples, history_light);
     const std::vector<glm::vec3> direct = light_after_a_good_frame(renderer, samples, false, 1);
     std::ranges::transform(light, direct, light.begin(), std::minus<>());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views made from colour and depth, against the same views of a scene that is known exactly: a floor, a wall, and a card
-// in front of it.
+// Views made from colour and depth, against the same views of a scene that is known exactly: a floor, a wall, and a
+// card in front of it.
 #include "core/render/residual_tiles.h"
 #include "core/render/warp_planes.h"
 #include "core/render/warp_renderer.h"

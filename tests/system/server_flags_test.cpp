@@ -84,7 +84,9 @@ TEST(Flags, ReadsEverything) {
                                 "1.5",
                                 "--fixed-camera",
                                 "--traversal",
-                                "bvh"})
+                                "bvh",
+                                "--visibility",
+                                "raster"})
                               .config;
     EXPECT_EQ(config.channels.size(), 2U);
     EXPECT_EQ(config.sky, glm::vec3(1.0F, 0.5F, 0.0F));
@@ -107,9 +109,9 @@ TEST(Flags, ReadsEverything) {
 }
 
 TEST(Flags, RecordsAndReplays) {
-    const Invocation both = read({"--scene", kFile, "--record", "out.fcrec", "--record-form", "views:3x3", "--record-form",
-                                  "g-buffer:jpeg:50", "--record-frames", "9", "--replay", "again=README.md",
-                                  "--replay-fps", "2.5"});
+    const Invocation both =
+        read({"--scene", kFile, "--record", "out.fcrec", "--record-form", "views:3x3", "--record-form",
+              "g-buffer:jpeg:50", "--record-frames", "9", "--replay", "again=README.md", "--replay-fps", "2.5"});
     EXPECT_THAT(both.problems, IsEmpty());
     EXPECT_EQ(both.config.records.at(0).file, "out.fcrec");
     EXPECT_EQ(both.config.record_frames, 9U);
@@ -121,7 +123,8 @@ TEST(Flags, RecordsAndReplays) {
 }
 
 TEST(Flags, RefusesRecordingsThatCannotBe) {
-    EXPECT_THAT(read({"--replay", "nowhere.fcrec"}).problems, Contains(HasSubstr("--replay nowhere.fcrec: there is no")));
+    EXPECT_THAT(read({"--replay", "nowhere.fcrec"}).problems,
+                Contains(HasSubstr("--replay nowhere.fcrec: there is no")));
     EXPECT_THAT(read({"--replay", kFile, "--replay-fps", "0"}).problems, Contains(HasSubstr("--replay-fps")));
     EXPECT_THAT(read({"--scene", kFile, "--record-form", "views:3"}).problems,
                 Contains(HasSubstr("--record-form views:3: write views")));
@@ -144,22 +147,26 @@ TEST(Flags, SayWhoSteersWhichCamera) {
     EXPECT_EQ(all.config.channels.at(1).control, std::nullopt) << "what is said of one channel wins";
     EXPECT_EQ(all.config.steering_lease, std::chrono::milliseconds(1500));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "c=steered"}).problems, Contains(HasSubstr("no channel")));
-    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems, Contains(HasSubstr("scripted, steered or own")));
+    EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems,
+                Contains(HasSubstr("scripted, steered or own")));
     EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "0.1"}).problems, Contains(HasSubstr("0.5 to 3600")));
     EXPECT_THAT(read({"--scene", kFile, "--steering-lease", "nan"}).problems, Contains(HasSubstr("--steering-lease")));
 }
 
 TEST(Flags, GiveEveryClientACamera) {
-    const Invocation all = read({"--scene", kFile, "--camera-control", "own", "--max-own-cameras", "7", "--own-camera-budget", "250"});
+    const Invocation all =
+        read({"--scene", kFile, "--camera-control", "own", "--max-own-cameras", "7", "--own-camera-budget", "250"});
     EXPECT_THAT(all.problems, IsEmpty());
     EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kOwn);
     EXPECT_EQ(all.config.max_own_cameras, 7U);
     EXPECT_EQ(all.config.own_camera_budget_ms, 250.0);
-    EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems, Contains(HasSubstr("--max-own-cameras 0: 1 to")));
+    EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems,
+                Contains(HasSubstr("--max-own-cameras 0: 1 to")));
     EXPECT_EQ(read({"--scene", kFile, "--max-own-cameras-per-peer", "2"}).config.limits.max_own_cameras_per_peer, 2U);
     EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras-per-peer", "0"}).problems,
                 Contains(HasSubstr("--max-own-cameras-per-peer 0: 1 to")));
-    EXPECT_THAT(read({"--scene", kFile, "--own-camera-budget", "0"}).problems, Contains(HasSubstr("--own-camera-budget 0: 1 to")));
+    EXPECT_THAT(read({"--scene", kFile, "--own-camera-budget", "0"}).problems,
+                Contains(HasSubstr("--own-camera-budget 0: 1 to")));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "own", "--record", "a.fcrec"}).problems,
                 Contains(HasSubstr("--record a.fcrec: with --camera-control own every client")));
     EXPECT_THAT(read({"--channel", "a=README.md", "--channel", "b=README.md", "--camera-control", "a=own", "--record",
@@ -197,8 +204,8 @@ TEST(Flags, ReadsAndChecksLimits) {
         read({"--scene", kFile, "--max-scene-downloads", "0", "--max-messages-per-second", "1", "--max-pixels-per-peer",
               "18446744073709551615", "--max-opens-per-second-per-peer", "nan"})
             .problems;
-    for (const char* const flag : {"--max-scene-downloads 0", "--max-messages-per-second 1", "--max-pixels-per-peer 1844",
-                                   "--max-opens-per-second-per-peer nan"}) {
+    for (const char* const flag : {"--max-scene-downloads 0", "--max-messages-per-second 1",
+                                   "--max-pixels-per-peer 1844", "--max-opens-per-second-per-peer nan"}) {
         EXPECT_THAT(problems, Contains(HasSubstr(flag)));
     }
 }

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/gpu/raster_target.h"
+
+#include "core/base/error.h"
+#include "core/gpu/format.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace fieldcast::gpu {
+
+/// One array image and a view of each of its layers.
+struct RasterTarget::Image {
+    Image(const Device& device, const RasterTargetDesc& desc, VkFormat format);
+    ~Image();
+    Image(Image&& other) noexcept
+        : device(other.device), image(std::exchange(other.image, VK_NULL_HANDLE)),
+          memory(std::exchange(other.memory, VK_NULL_HANDLE)), views(std::move(other.views)) {}
+    Image& operator=(Image&&) = delete;
+
+    VkDevice device;
+    VkImage image = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::vector<VkImageView> views;
+};
+
+struct RasterTarget::Images {
+    std::vector<Image> colours;
+    std::vector<Image> depth; ///< one
+};
+
+namespace {
+
+VkImageAspectFlags aspect_of(VkFormat format) {
+    return format == RasterTarget::kDepthFormat ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+VkImage create_image(const Device& device, const RasterTargetDesc& desc, VkFormat format) {
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {desc.width_px, desc.height_px, 1};
+    info.mipLevels = 1;
+    info.arrayLayers = desc.layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = format == RasterTarget::kDepthFormat
+                     ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                     : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    VkImage image = VK_NULL_HANDLE;
+    check(vkCreateImage(device.handle(), &info, nullptr, &image), "vkCreateImage");
+    return image;
+}
+
+VkDeviceMemory allocate_memory(const Device& device, VkImage image) {
+    VkMemoryRequirements requirements{};
+    vkGetImageMemoryRequirements(device.handle(), image, &requirements);
+    const auto local = device.memory_type(requirements.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    VkMemoryAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    info.allocationSize = requirements.size;
+    info.memoryTypeIndex = local ? *local : device.memory_type(requirements.memoryTypeBits, 0).value();
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    check(vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory");
+    return memory;
+}
+
+VkImageView create_view(VkDevice device, VkImage image, VkFormat format, std::uint32_t layer) {
+    VkImageViewCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    info.image = image;
+    info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    info.format = format;
+    info.subresourceRange = {aspect_of(format), 0, 1, layer, 1};
+    VkImageView view = VK_NULL_HANDLE;
+    check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
+    return view;
+}
+
+/// What used the images before is over when what comes after begins.
+void transition(VkCommandBuffer commands, VkImage image, VkFormat format, VkImageLayout from, VkImageLayout to) {
+    VkImageMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {aspect_of(format), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+void require_size(const Device& device, const RasterTargetDesc& desc) {
+    const DeviceInfo& info = device.info();
+    if (std::max(desc.width_px, desc.height_px) > info.max_image_side || desc.layers > info.max_image_layers) {
+        throw VulkanError("vkCreateImage: drawing into " + std::to_string(desc.width_px) + "x" +
+                          std::to_string(desc.height_px) + " with " + std::to_string(desc.layers) +
+                          " layers is more than " + info.name + " allows (" + std::to_string(info.max_image_side) +
+                          ", " + std::to_string(info.max_image_layers) + ")");
+    }
+}
+
+} // namespace
+
+RasterTarget::Image::Image(const Device& d, const RasterTargetDesc& desc, VkFormat format) : device(d.handle()) {
+    image = create_image(d, desc, format);
+    memory = allocate_memory(d, image);
+    check(vkBindImageMemory(device, image, memory, 0), "vkBindImageMemory");
+    for (std::uint32_t layer = 0; layer < desc.layers; ++layer) {
+        views.push_back(create_view(device, image, format, layer));
+    }
+}
+
+RasterTarget::Image::~Image() {
+    for (VkImageView view : views) {
+        vkDestroyImageView(device, view, nullptr);
+    }
+    vkDestroyImage(device, image, nullptr);
+    vkFreeMemory(device, memory, nullptr);
+}
+
+RasterTarget::RasterTarget(const Device& device, const RasterTargetDesc& desc)
+    : images_(std::make_unique<Images>()), desc_(desc) {
+    require_size(device, desc);
+    for (const VkFormat format : desc.colours) {
+        images_->colours.emplace_back(device, desc, format);
+    }
+    images_->depth.emplace_back(device, desc, kDepthFormat);
+}
+
+RasterTarget::RasterTarget() = default;
+RasterTarget::~RasterTarget() = default;
+RasterTarget::RasterTarget(RasterTarget&& other) noexcept = default;
+RasterTarget& RasterTarget::operator=(RasterTarget&& other) noexcept = default;
+
+void RasterTarget::begin(Recorder& recorder) const {
+    for (std::size_t i = 0; i < desc_.colours.size(); ++i) {
+        transition(recorder.commands(), images_->colours[i].image, desc_.colours[i], VK_IMAGE_LAYOUT_UNDEFINED,
+                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    }
+    transition(recorder.commands(), images_->depth[0].image, kDepthFormat, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+}
+
+void RasterTarget::copy_to(Recorder& recorder, std::size_t colour, const Buffer& buffer, std::uint64_t offset_bytes,
+                           std::uint64_t layer_bytes, std::uint32_t layer_count) const {
+    const VkImage image = images_->colours.at(colour).image;
+    transition(recorder.commands(), image, desc_.colours[colour], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    std::vector<VkBufferImageCopy> regions(layer_count);
+    for (std::uint32_t layer = 0; layer < layer_count; ++layer) {
+        regions[layer].bufferOffset = offset_bytes + layer * layer_bytes;
+        regions[layer].imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
+        regions[layer].imageExtent = {desc_.width_px, desc_.height_px, 1};
+    }
+    vkCmdCopyImageToBuffer(recorder.commands(), image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle(),
+                           layer_count, regions.data());
+}
+
+VkImageView RasterTarget::colour_view(std::size_t colour, std::uint32_t layer) const {
+    return images_->colours.at(colour).views.at(layer);
+}
+
+VkImageView RasterTarget::depth_view(std::uint32_t layer) const {
+    return images_->depth[0].views.at(layer);
+}
+
+} // namespace fieldcast::gpu

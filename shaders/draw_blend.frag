@@ -1,0 +1,8 @@
+#version 460
+// SPDX-License-Identifier: Apache-2.0
+// Marks pixels that have BLEND surfaces in front of what is solid.
+layout(location = 1) out uint has_layers;
+
+void main() {
+    has_layers = 1u;
+}
