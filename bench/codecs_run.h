@@ -27,10 +27,11 @@ public:
     /// Throws Interrupted.
     void run();
 
-    /// source_size, guard_band_share, frames, view_count, coarse_normals_deg (how far normals of 8 bits a component are from
-    /// those of 16: mean of the last frame, and max), and `rows`: part (a plane, "light": DIFFUSE and SPECULAR, "total light": TOTAL_LIGHT in
-    /// their place, or "view": one view), coding, bytes, encode_ms, decode_ms, ssim, discard_points. Bytes are means, times medians over
-    /// frames and views. ssim of light, total light and coarse normals is that of the views made from them; null for lossless codings.
+    /// source_size, guard_band_share, frames, view_count, coarse_normals_deg (how far normals of 8 bits a component are
+    /// from those of 16: mean of the last frame, and max), and `rows`: part (a plane, "light": DIFFUSE and SPECULAR,
+    /// "total light": TOTAL_LIGHT in their place, or "view": one view), coding, bytes, encode_ms, decode_ms, ssim,
+    /// discard_points. Bytes are means, times medians over frames and views. ssim of light, total light and coarse
+    /// normals is that of the views made from them; null for lossless codings.
     nlohmann::ordered_json result() const;
 
 private:
@@ -65,7 +66,8 @@ private:
     render::GridRenderer uncoded_;
     render::GridRenderer coarse_; ///< of coarse normals
     std::vector<std::unique_ptr<render::GridRenderer>> renderers_; ///< of each coding that changes light, else null
-    std::vector<std::unique_ptr<render::GridRenderer>> merged_; ///< likewise, of total light; also of one lossless coding
+    std::vector<std::unique_ptr<render::GridRenderer>>
+        merged_; ///< likewise, of total light; also of one lossless coding
     SourceFrame before_;                                           ///< the frame before
     double mean_angle_deg_ = 0.0;    ///< between normals and coarse ones, last frame
     double largest_angle_deg_ = 0.0; ///< of all frames

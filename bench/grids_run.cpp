@@ -111,7 +111,8 @@ nlohmann::ordered_json GridsRun::result() const {
         row["ssim_min"] = spread_of(ssim).min;
         json["grids"].push_back(row);
     }
-    for (const auto& [lost, ssim] : {std::pair("ssim_lost", "ssim"), {"ssim_lost_without_noise", "ssim_without_noise"}}) {
+    for (const auto& [lost, ssim] :
+         {std::pair("ssim_lost", "ssim"), {"ssim_lost_without_noise", "ssim_without_noise"}}) {
         json[lost] = json["grids"].front()[ssim].get<double>() - json["grids"].back()[ssim].get<double>();
     }
     return json;

@@ -27,7 +27,8 @@ void fill(Plane& plane, std::uint32_t x0, std::uint32_t y0, std::uint32_t size_p
     for (std::uint32_t y = y0; y < y0 + size_px; ++y) {
         for (std::uint32_t x = x0; x < x0 + size_px; ++x) {
             for (int c = 0; c < 3; ++c) {
-                const std::size_t at = 3 * (static_cast<std::size_t>(y) * plane.width_px + x) + static_cast<std::size_t>(c);
+                const std::size_t at =
+                    3 * (static_cast<std::size_t>(y) * plane.width_px + x) + static_cast<std::size_t>(c);
                 plane.bytes[at] = static_cast<std::byte>(colour[c] * 255.0F + 0.5F);
             }
         }

@@ -64,7 +64,9 @@ double display(float linear, float exposure) { // clamp and sRGB curve
 class HoleRun {
 public:
     HoleRun(const gpu::Device& device, const HoleOptions& options)
-        : scene_(device, {.file = find_benchmark_scene(options.scene).file, .grid = options.grid, .size = parse_size("--size", options.size)}),
+        : scene_(device, {.file = find_benchmark_scene(options.scene).file,
+                          .grid = options.grid,
+                          .size = parse_size("--size", options.size)}),
           source_(device, scene_.gpu_scene()), planes_(device), reference_(device, scene_.gpu_scene()),
           variants_(make_variants(scene_.grid())) {
         for (Variant& variant : variants_) {

@@ -28,8 +28,9 @@ struct SourcesOptions {
     bool scores_all_views = false;
 };
 
-const std::vector<std::string> kColumns{"machine", "commit", "command",       "scene",        "protocol",   "preset",  "sources",
-                                        "rmse",    "ssim",   "discard_share", "traced_share", "hole_paths", "frame_ms"};
+const std::vector<std::string> kColumns{"machine",      "commit",     "command", "scene", "protocol",
+                                        "preset",       "sources",    "rmse",    "ssim",  "discard_share",
+                                        "traced_share", "hole_paths", "frame_ms"};
 
 void print_table(const nlohmann::ordered_json& result) {
     std::cout << "\nsources         RMSE    SSIM   discards   traced  hole paths     frame\n";
@@ -103,8 +104,9 @@ void add_sources_command(CLI::App& app) {
     command->add_option("--json", options->json, "write the results to this file");
     command->add_option("--csv", options->csv, "write the table to this file");
     command->add_option("--html", options->html, "write a report with charts to this file");
-    command->add_option("--out", options->out,
-                        "write heat maps to this folder: MEASURE_N.png for configuration N, dark 0, bright the largest");
+    command->add_option(
+        "--out", options->out,
+        "write heat maps to this folder: MEASURE_N.png for configuration N, dark 0, bright the largest");
     command->footer("\nExample:\n  ./fieldcast bench sources --scene sponza --sources middle corners --out heat_maps");
     command->callback([options] { run_sources(*options); });
 }

@@ -19,8 +19,9 @@ std::string lead_of(const Rows& rows) {
     const auto& [last, many] = rows.back();
     const double longer = many["frame_ms"].get<double>() / std::max(one["frame_ms"].get<double>(), 1e-9);
     const double shift = many["rmse"].get<double>() / std::max(one["rmse"].get<double>(), 1e-9) - 1.0;
-    return "With sources “" + last + "” a frame takes " + report::fixed(longer, 2) + " times as long as with “" + first +
-           "”, and the error is " + report::fixed(100.0 * std::abs(shift), 1) + " % " + (shift > 0.0 ? "larger." : "smaller.");
+    return "With sources “" + last + "” a frame takes " + report::fixed(longer, 2) + " times as long as with “" +
+           first + "”, and the error is " + report::fixed(100.0 * std::abs(shift), 1) + " % " +
+           (shift > 0.0 ? "larger." : "smaller.");
 }
 
 report::Markup quality(const Rows& rows) {

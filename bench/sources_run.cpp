@@ -61,10 +61,10 @@ void SourcesRun::run() {
             }
             for (const LatticePosition position : scored_views()) {
                 if (settings_.protocol.is_scored(frame)) {
-                    entry.row.score({frame, position}, {.reference = references_.get(frame, position,
-                                                                                     settings_.protocol.reference_samples,
-                                                                                     {})
-                                                                         .value()});
+                    entry.row.score(
+                        {frame, position},
+                        {.reference =
+                             references_.get(frame, position, settings_.protocol.reference_samples, {}).value()});
                 }
             }
             progress.add(1.0);

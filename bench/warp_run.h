@@ -26,10 +26,10 @@ public:
     void run();
 
     /// source_size, guard_band_share, view_count, inverse_depth_unit, tiles, plane_bytes (each plane, lossless) and
-    /// `rows`: mode, coding, bytes (of all views of the grid, or of all planes), ssim and rmse (mean over the views made,
-    /// against the finished ones), worst_ssim, residual_percent, extended_percent (of the pixels of the views made),
-    /// ms_per_view. With a folder for pictures also `pictures`: file, reference (both without ".png"), input (mode and
-    /// coding), rmse and ssim.
+    /// `rows`: mode, coding, bytes (of all views of the grid, or of all planes), ssim and rmse (mean over the views
+    /// made, against the finished ones), worst_ssim, residual_percent, extended_percent (of the pixels of the views
+    /// made), ms_per_view. With a folder for pictures also `pictures`: file, reference (both without ".png"), input
+    /// (mode and coding), rmse and ssim.
     nlohmann::ordered_json result() const { return result_; }
 
 private:

@@ -53,7 +53,8 @@ struct Wish {
     PlaneWish planes = PlaneWish::kWithGBuffer;
     bool has_coarse_normals = false; ///< of kWithGBuffer: 8 bits a component rather than 16
     bool has_residual = true; ///< of mode kWarp: also what corner views see and the source does not
-    /// Of views, of the illumination in mode kScene or of colour in mode kWarp, most wanted first; other planes are always lossless.
+    /// Of views, of the illumination in mode kScene or of colour in mode kWarp, most wanted first; other planes are
+    /// always lossless.
     std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};
     std::uint8_t quality = 0; ///< of lossy codecs, 1 to 100; 0: the server's choice
     float max_frames_per_second = 0.0F;
@@ -84,8 +85,8 @@ struct Agreement {
 
 v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);
 
-/// Checks that a Configured answers `wish`: mode and grid as asked, or within what `wish.adaptation` allows if the server
-/// says that it has adapted; everything within what a client can hold.
+/// Checks that a Configured answers `wish`: mode and grid as asked, or within what `wish.adaptation` allows if the
+/// server says that it has adapted; everything within what a client can hold.
 Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish);
 
 /// Why a frame does not fit what was agreed, or nothing. Afterwards views have the agreed number and size, and source

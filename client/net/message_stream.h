@@ -24,7 +24,7 @@ struct ReadingOptions {
     /// one thread that looks after many streams. Must only note the fact and return.
     std::function<void()> on_change{};
     std::size_t max_waiting_bytes = 64U << 20; ///< received and not taken; then the transport makes the server wait
-    double max_bytes_per_second = 0.0;         ///< `next` gives no more than that on average: a slow reader; 0: no limit
+    double max_bytes_per_second = 0.0; ///< `next` gives no more than that on average: a slow reader; 0: no limit
 };
 
 /// One LightField.Open stream, as messages. Opened by the constructor; the destructor cuts it and waits for gRPC to let

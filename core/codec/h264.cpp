@@ -139,7 +139,8 @@ struct Output {
     bool is_picture() const { return facts.iBufferStatus == 1; }
 };
 
-/// Nothing if the picture is damaged. The decoder keeps a picture back in case an earlier one follows; flushing gets it.
+/// Nothing if the picture is damaged. The decoder keeps a picture back in case an earlier one follows; flushing gets
+/// it.
 std::optional<Output> decode(ISVCDecoder& decoder, std::span<const std::byte> stream) {
     Output output;
     const auto* const bytes = reinterpret_cast<const unsigned char*>(stream.data());

@@ -48,7 +48,8 @@ SourceFrame first_image(const SourceFrame& source) {
 
 } // namespace
 
-void write_light_field(const std::filesystem::path& folder, const LightFieldPicture& picture, const LightFieldProducts& products) {
+void write_light_field(const std::filesystem::path& folder, const LightFieldPicture& picture,
+                       const LightFieldProducts& products) {
     FC_ASSERT(picture.views.views.size() == picture.grid.view_count(), "a picture has all views of its grid");
     std::filesystem::create_directories(folder);
     if (products.views) {

@@ -26,6 +26,7 @@ struct LightFieldPicture {
 
 /// Writes the products into `folder`, which is created. Every file appears complete or not at all.
 /// Throws std::system_error.
-void write_light_field(const std::filesystem::path& folder, const LightFieldPicture& picture, const LightFieldProducts& products);
+void write_light_field(const std::filesystem::path& folder, const LightFieldPicture& picture,
+                       const LightFieldProducts& products);
 
 } // namespace fieldcast::image

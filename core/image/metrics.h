@@ -25,10 +25,11 @@ double psnr_db(const RgbF32& image, const RgbF32& reference);
 /// range 1 and population covariance, over the pixels whose window lies inside. Images are at least 11×11.
 double ssim(const RgbF32& image, const RgbF32& reference);
 
-/// What rmse() and ssim() would be against `first` and `second` without their noise. The two show the same and differ by
-/// independent noise only, so that products of one with the other are free of it where squares of their mean are not:
-/// (x − a)·(x − b) in place of (x − r)², and the covariance of a and b, if it is positive, in place of the variance of r.
-/// What the sRGB curve makes of noise in its mean remains. `image` has nothing in common with their noise.
+/// What rmse() and ssim() would be against `first` and `second` without their noise. The two show the same and differ
+/// by independent noise only, so that products of one with the other are free of it where squares of their mean are
+/// not: (x − a)·(x − b) in place of (x − r)², and the covariance of a and b, if it is positive, in place of the
+/// variance of r. What the sRGB curve makes of noise in its mean remains. `image` has nothing in common with their
+/// noise.
 double rmse_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second);
 double ssim_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second);
 

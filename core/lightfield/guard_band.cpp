@@ -196,7 +196,8 @@ Reach reach(const std::vector<float>& displacements_px_m, float nearest_m, float
 } // namespace
 
 GuardBandChoice choose_guard_band(const Camera& source, const GuardBand& widest, std::span<const float> depth_m,
-                                  const ViewGrid& largest, double target_share, double max_extra_share, LatticePosition at) {
+                                  const ViewGrid& largest, double target_share, double max_extra_share,
+                                  LatticePosition at) {
     const Camera widened = with_guard_band(source, widest);
     FC_ASSERT(depth_m.size() == static_cast<std::size_t>(widened.width_px) * widened.height_px,
               "depth image has the size of the widened camera");

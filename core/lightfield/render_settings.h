@@ -31,7 +31,8 @@ struct ReprojectionThresholds {
     bool operator==(const ReprojectionThresholds&) const = default;
 };
 
-/// How pixels are filled that the source does not show, cheapest first; what is left is path traced (docs/lightfield.md).
+/// How pixels are filled that the source does not show, cheapest first; what is left is path traced
+/// (docs/lightfield.md).
 struct HoleFilling {
     bool previous_frame = true;     ///< average the hole's own light over frames; trace settled holes now and then only
     bool isolated = true;           ///< isolated holes take light of the same surface around their place in the source
@@ -53,7 +54,7 @@ inline constexpr std::uint32_t kMaxLightCandidates = 64;
 /// How next event estimation chooses its light sample; every choice is unbiased (docs/lightfield.md).
 struct LightSampling {
     std::uint32_t candidates = 4; ///< 1 to 64, unshadowed, at the first two vertices; resampling keeps one
-    bool each_kind = true;        ///< at the first vertex: a sample of each kind of light (environment, emissive, punctual)
+    bool each_kind = true; ///< at the first vertex: a sample of each kind of light (environment, emissive, punctual)
 
     /// One sample of all lights, as in the paper.
     static constexpr LightSampling plain() { return {1, false}; }
@@ -81,8 +82,8 @@ struct RenderSettings {
     Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2
-    /// Every view averages its own light over frames as well, with weight temporal_alpha, as in the paper. The red route
-    /// does so anyway.
+    /// Every view averages its own light over frames as well, with weight temporal_alpha, as in the paper. The red
+    /// route does so anyway.
     bool accumulate_views = false;
     Route route = Route::kGreen;
     /// Reference mode: while nothing moves, frames are averaged without limits and without denoiser.

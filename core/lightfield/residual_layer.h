@@ -17,8 +17,8 @@ inline constexpr std::size_t kMaxResidualViews = 4;
 struct ResidualLayer {
     std::vector<LatticePosition> positions; ///< of the views; empty: there is no such layer
     LatticeGeometry geometry;
-    /// Numbers, growing: (view · tile rows + tile row) · tile columns + tile column. Tiles at the right and lower border
-    /// may reach beyond the view; what they hold there means nothing.
+    /// Numbers, growing: (view · tile rows + tile row) · tile columns + tile column. Tiles at the right and lower
+    /// border may reach beyond the view; what they hold there means nothing.
     std::vector<std::uint32_t> tiles;
 
     bool operator==(const ResidualLayer&) const = default;

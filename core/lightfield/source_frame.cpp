@@ -21,7 +21,8 @@ bool is_illumination(PlaneSemantic semantic) {
 }
 
 std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic) {
-    return static_cast<std::uint32_t>(header.source_positions.size()) * (is_illumination(semantic) ? 1 + header.layer_count : 1);
+    return static_cast<std::uint32_t>(header.source_positions.size()) *
+           (is_illumination(semantic) ? 1 + header.layer_count : 1);
 }
 
 bool is_residual(PlaneSemantic semantic) {

@@ -42,12 +42,13 @@ struct FrameHeader {
     std::uint32_t noise_frame = 0;  ///< position in the random sequences; consecutive frames continue them
     Camera source;                  ///< at lattice position (0, 0), without guard band
     GuardBand guard_band;           ///< planes are the source image plus this band
-    /// Where the source images are taken from, at most kMaxSources, none twice; the geometry is that of these positions.
+    /// Where the source images are taken from, at most kMaxSources, none twice; the geometry is that of these
+    /// positions.
     std::vector<LatticePosition> source_positions = middle_source();
     LatticeGeometry source_geometry;
     RenderSettings settings;
-    /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below the
-    /// images' in the illumination planes, which are (1 + layer_count) times as high.
+    /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below
+    /// the images' in the illumination planes, which are (1 + layer_count) times as high.
     std::uint32_t layer_count = 0;
     /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
     /// (accumulate); 0: the usual way.
@@ -85,8 +86,8 @@ bool is_residual(PlaneSemantic semantic);
 /// Width of a plane of a source frame: the widened source's, or that of the tiles of the residual layer.
 std::uint32_t plane_width(const FrameHeader& header, PlaneSemantic semantic);
 
-/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has, or that of the tiles
-/// of the residual layer.
+/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has, or that of the
+/// tiles of the residual layer.
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic);
 
 } // namespace fieldcast

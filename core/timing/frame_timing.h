@@ -50,7 +50,8 @@ struct DeliveredFrame {
     std::int64_t decoded_ns = 0;
     std::int64_t rendered_ns = 0; ///< mode SCENE: views made
     std::int64_t shown_ns = 0;
-    std::int64_t clock_round_trip_ns = 0; ///< times of the other side are wrong by half of it at most; 0: they are unset
+    std::int64_t clock_round_trip_ns =
+        0; ///< times of the other side are wrong by half of it at most; 0: they are unset
 };
 
 /// A time of another clock on ours, which is `offset_ns` ahead of it. 0: unknown, or no time that a clock can show.

@@ -30,8 +30,8 @@ std::optional<std::string> problem_with(const RecorderFiles& files, const std::s
 
 /// Writes records of frames to files, on a thread of its own: whoever adds one never waits for the disk. Memory is
 /// bounded: when the disk is too slow, records are lost and counted. Files are flushed twice a second and complete when
-/// this is destroyed; a trace that was cut short (the process was killed) lacks its last bracket only, which the viewers
-/// accept.
+/// this is destroyed; a trace that was cut short (the process was killed) lacks its last bracket only, which the
+/// viewers accept.
 class Recorder {
 public:
     /// Throws UserError if a file cannot be created.

@@ -11,9 +11,9 @@
 
 namespace fieldcast::wire {
 
-/// The view from which the one at `position` may be predicted, in the same frame: the one nearest to the source of those
-/// that are whole steps away, on half steps above and left of it. Every grid that shows `position` shows it, too, so
-/// that clients with different grids share predicted views.
+/// The view from which the one at `position` may be predicted, in the same frame: the one nearest to the source of
+/// those that are whole steps away, on half steps above and left of it. Every grid that shows `position` shows it, too,
+/// so that clients with different grids share predicted views.
 LatticePosition base_position(LatticePosition position);
 
 /// The part of a frame of views that its other parts may be predicted from.

@@ -32,7 +32,8 @@ Decoded<std::vector<StageTime>> stages_from_proto(const v1::FrameHeader& message
 
 /// Of sources, or of views that the residual layer is for.
 template <class Message>
-void lattice_to_proto(const std::vector<LatticePosition>& positions, const LatticeGeometry& geometry, Message& message) {
+void lattice_to_proto(const std::vector<LatticePosition>& positions, const LatticeGeometry& geometry,
+                      Message& message) {
     for (const LatticePosition position : positions) {
         v1::LatticePosition& entry = *message.add_positions();
         entry.set_row_halves(position.row_halves);
@@ -46,7 +47,8 @@ void lattice_to_proto(const std::vector<LatticePosition>& positions, const Latti
 Decoded<void> sources_from_proto(const v1::SourceSet& message, FrameHeader& header) {
     constexpr int kMaxHalves = 2 * static_cast<int>(kMaxViews);
     if (message.positions().empty() || message.positions_size() > static_cast<int>(kMaxSources)) {
-        return decode_error("header.sources: " + std::to_string(message.positions_size()) + " positions, expected 1 to 8");
+        return decode_error("header.sources: " + std::to_string(message.positions_size()) +
+                            " positions, expected 1 to 8");
     }
     header.source_positions.clear();
     for (const v1::LatticePosition& entry : message.positions()) {

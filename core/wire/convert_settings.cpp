@@ -190,7 +190,8 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     if (const auto checked = check_counts(message); !checked) {
         return tl::unexpected(checked.error());
     }
-    settings.light_sampling = {std::max(message.light_sampling().candidates(), 1U), message.light_sampling().each_kind()};
+    settings.light_sampling = {std::max(message.light_sampling().candidates(), 1U),
+                               message.light_sampling().each_kind()};
     settings.next_event_estimation = message.next_event_estimation();
     settings.indirect_clamp = message.indirect_clamp();
     settings.denoiser = *denoiser;

@@ -13,8 +13,8 @@
 
 // Encoding: once per frame, plane and codec, once per view; shared by all clients of a channel.
 //
-//     auto source = encode_source(frame, {{kDiffuse, {kZstdFiltered}}, {kDepth, {kRaw}}}, {}, pool); // all wishes' union
-//     auto views = encode_views(rendered_union, view_format, {}, pool);                              // all grids' union
+//     auto source = encode_source(frame, {{kDiffuse, {kZstdFiltered}}, {kDepth, {kRaw}}}, {}, pool); // what all want
+//     auto views = encode_views(rendered_union, view_format, {}, pool); // of all grids
 //
 // Both results are immutable; keep them in a shared_ptr. `chunks.h` makes a client's frame from them without copying.
 namespace fieldcast::wire {
@@ -76,8 +76,8 @@ struct EncodedSource {
     const EncodedPlane* find(PlaneChoice choice) const; ///< null if absent
 };
 
-/// Encodes the planes named in `choices` (twice named: once encoded), those of another format than the frame's converted
-/// before. A plane that the frame lacks is our bug.
+/// Encodes the planes named in `choices` (twice named: once encoded), those of another format than the frame's
+/// converted before. A plane that the frame lacks is our bug.
 EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoice> choices, const KeyFrame& key,
                             WorkerPool& pool);
 

@@ -37,7 +37,8 @@ Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader&
         return decode_error("header.planes: codec " + std::to_string(message.codec()) + " is not for format " +
                             std::to_string(message.format()));
     }
-    if (message.width_px() != plane_width(header, *semantic) || message.height_px() != plane_height(header, *semantic)) {
+    if (message.width_px() != plane_width(header, *semantic) ||
+        message.height_px() != plane_height(header, *semantic)) {
         return decode_error("header.planes: size differs from the source with guard band (and layers), or the tiles");
     }
     if (*format == PlaneFormat::kR16 && !(header.inverse_depth_unit > 0.0F)) {

@@ -38,10 +38,12 @@ public:
     Opener(OwnCameras& cameras, ChannelSetup setup)
         : cameras_(cameras), setup_(std::make_shared<const ChannelSetup>(std::move(setup))) {}
 
-    tl::expected<feed::OwnFeed, std::string> open(const feed::CameraLoad& load, const feed::OwnFeed* replaced) override {
+    tl::expected<feed::OwnFeed, std::string> open(const feed::CameraLoad& load,
+                                                  const feed::OwnFeed* replaced) override {
         auto feed = std::make_shared<feed::Feed>(setup_->info);
         feed->set_frames_per_second(load.frames_per_second);
-        const auto id = cameras_.add(setup_, feed, load, replaced != nullptr ? std::optional(replaced->id()) : std::nullopt);
+        const auto id =
+            cameras_.add(setup_, feed, load, replaced != nullptr ? std::optional(replaced->id()) : std::nullopt);
         if (!id) {
             return tl::unexpected(refusal_text(setup_->info.name, id.error()));
         }
@@ -220,7 +222,8 @@ std::shared_ptr<void> OwnCameras::make(Id id, const ChannelSetup& channel, const
     try {
         auto made = channel.make(
             {.feed = feed, .used = [this, id](std::chrono::duration<double> used) { observe(id, used); }});
-        log::info("own camera ready", {{"channel", channel.info.name}, {"camera", id}, {"seconds", since(begin).count()}});
+        log::info("own camera ready",
+                  {{"channel", channel.info.name}, {"camera", id}, {"seconds", since(begin).count()}});
         return made;
     } catch (const std::exception& problem) {
         log::error("own camera failed",
@@ -244,8 +247,8 @@ void OwnCameras::collect(metrics::Page& page) {
 }
 
 metrics::Counter& OwnCameras::refused(const std::string& channel, Shortage shortage) {
-    return registry_.counter({"fieldcast_own_cameras_refused_total", "Cameras that a client asked for and did not get, by "
-                                                                     "what was short."},
+    return registry_.counter({"fieldcast_own_cameras_refused_total",
+                              "Cameras that a client asked for and did not get, by what was short."},
                              {{"channel", channel}, {"reason", label_of(shortage)}});
 }
 

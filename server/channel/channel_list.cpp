@@ -33,7 +33,8 @@ ChannelList::ChannelList(const ops::Config& config, metrics::Registry& registry)
 void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
     const std::string& name = feed->info().name;
     if (std::ranges::any_of(feeds_, [&](const auto& other) { return other->info().name == name; })) {
-        throw UserError("two channels are named '" + name + "'; tell them apart with --channel NAME=FILE or --replay NAME=FILE");
+        throw UserError("two channels are named '" + name +
+                        "'; tell them apart with --channel NAME=FILE or --replay NAME=FILE");
     }
     feeds_.push_back(feed);
 }

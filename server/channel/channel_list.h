@@ -17,8 +17,8 @@ namespace fieldcast::channel {
 /// rendered.
 class ChannelList {
 public:
-    /// All channels are ready when constructed. `config` and `registry` must outlive it. Throws UserError if a scene or a
-    /// recording is not usable, or two channels have one name.
+    /// All channels are ready when constructed. `config` and `registry` must outlive it. Throws UserError if a scene or
+    /// a recording is not usable, or two channels have one name.
     ChannelList(const ops::Config& config, metrics::Registry& registry);
 
     const std::vector<std::shared_ptr<feed::Feed>>& feeds() const { return feeds_; } ///< those of scenes first

@@ -45,7 +45,8 @@ bool FairTurns::is_before(Id id, const Member& member) const {
 FairTurns::TimePoint FairTurns::patience_ends(const Member& asking) const {
     TimePoint ends = TimePoint::min();
     for (const auto& [id, other] : members_) {
-        const bool is_behind = other.has_turned && !other.is_waiting && std::max(other.finish, virtual_time_) < asking.start;
+        const bool is_behind =
+            other.has_turned && !other.is_waiting && std::max(other.finish, virtual_time_) < asking.start;
         if (is_behind) {
             ends = std::max(ends, other.ended + asking.cost / kPatienceDivisor);
         }

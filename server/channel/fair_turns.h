@@ -7,15 +7,15 @@
 #include <optional>
 
 // Who may use the device next, when several channels share it.
-// Follows: P. Goyal, H. M. Vin, H. Cheng. Start-time Fair Queueing: A Scheduling Algorithm for Integrated Services Packet
-// Switching Networks. SIGCOMM 1996. Section 2.
-// Differs: what a turn costs is known only after it, so its finish tag is; and the device waits a little for who has less
-// and has just let go, as S. Iyer, P. Druschel. Anticipatory Scheduling. SOSP 2001, does for disks: a channel asks for its
-// next turn only after it has handed on the frame of the last one.
+// Follows: P. Goyal, H. M. Vin, H. Cheng. Start-time Fair Queueing: A Scheduling Algorithm for Integrated Services
+// Packet Switching Networks. SIGCOMM 1996. Section 2.
+// Differs: what a turn costs is known only after it, so its finish tag is; and the device waits a little for who has
+// less and has just let go, as S. Iyer, P. Druschel. Anticipatory Scheduling. SOSP 2001, does for disks: a channel asks
+// for its next turn only after it has handed on the frame of the last one.
 namespace fieldcast::channel {
 
-/// Gives out turns so that everybody who always wants one gets the same time, however long single turns are. Who was away
-/// has saved up nothing. Not thread-safe; `now` must not go backwards.
+/// Gives out turns so that everybody who always wants one gets the same time, however long single turns are. Who was
+/// away has saved up nothing. Not thread-safe; `now` must not go backwards.
 class FairTurns {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;

@@ -19,7 +19,8 @@ std::int64_t steady_ns() {
 std::vector<PlaneSemantic> source_semantics_of(const std::vector<wire::PlaneChoice>& choices) {
     std::vector<PlaneSemantic> semantics;
     for (const wire::PlaneChoice& choice : choices) {
-        const bool is_source = std::ranges::find(render::kSourceSemantics, choice.semantic) != render::kSourceSemantics.end();
+        const bool is_source =
+            std::ranges::find(render::kSourceSemantics, choice.semantic) != render::kSourceSemantics.end();
         if (is_source && std::ranges::find(semantics, choice.semantic) == semantics.end()) {
             semantics.push_back(choice.semantic);
         }

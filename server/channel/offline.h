@@ -13,8 +13,8 @@ using OfflineProgress = std::function<bool(const std::string& done)>;
 FrameMoment offline_moment(const ops::Config& config, std::uint32_t frame);
 
 /// Renders frames of a channel as its clients would get them, all views of the largest grid, and writes light fields to
-/// files: quilt, views, source EXR; with references, an EXR of linear radiance per view as well. False: stopped; what was
-/// written is complete. Throws UserError if the scene is not usable, std::system_error if a file cannot be written.
+/// files: quilt, views, source EXR; with references, an EXR of linear radiance per view as well. False: stopped; what
+/// was written is complete. Throws UserError if the scene is not usable, std::system_error if a file cannot be written.
 bool render_offline(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel,
                     const ops::OfflineJob& job, const OfflineProgress& progress);
 

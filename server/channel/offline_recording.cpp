@@ -24,7 +24,8 @@ bool record_offline(const gpu::Device& device, const ops::Config& config, const 
         }
         const double time_s = frame / static_cast<double>(config.frames_per_second);
         const auto at = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(time_s));
-        const auto shown_at = FrameEncoder::TimePoint(std::chrono::duration_cast<FrameEncoder::TimePoint::duration>(at));
+        const auto shown_at =
+            FrameEncoder::TimePoint(std::chrono::duration_cast<FrameEncoder::TimePoint::duration>(at));
         RenderedFrame rendered = renderer.render(frame + 1, offline_moment(config, frame), demand);
         const feed::FramePtr encoded = encoder.encode(std::move(rendered), shown_at);
         FC_ASSERT(writer.add(*encoded, at), "a frame was rendered that cannot be recorded");

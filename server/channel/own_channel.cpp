@@ -51,7 +51,8 @@ std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, cons
     };
     FrameRenderer renderer(shared.device, shared.config, choice);
     const camera::FrameCost cost = measure(renderer);
-    const auto server = std::make_shared<Server>(Server{.settled = renderer.settled(), .begin = Clock::now(), .feed = {}});
+    const auto server =
+        std::make_shared<Server>(Server{.settled = renderer.settled(), .begin = Clock::now(), .feed = {}});
     log::info("own cameras", {{"channel", choice.name},
                               {"source_ms", cost.source_ms},
                               {"ms_per_view_megapixel", cost.ms_per_view_megapixel}});

@@ -28,9 +28,10 @@ class FeedOpener : public std::enable_shared_from_this<FeedOpener> {
 public:
     virtual ~FeedOpener() = default;
 
-    /// A feed that nobody else sees; its frames begin when its camera is ready. Refused with a reason that says what was
-    /// asked and what is left. `replaced`, if any, is a feed of the same server, of this channel or another, that the
-    /// caller closes once it has the new one: what it takes counts as free, and its camera goes before the new one comes.
+    /// A feed that nobody else sees; its frames begin when its camera is ready. Refused with a reason that says what
+    /// was asked and what is left. `replaced`, if any, is a feed of the same server, of this channel or another, that
+    /// the caller closes once it has the new one: what it takes counts as free, and its camera goes before the new one
+    /// comes.
     virtual tl::expected<OwnFeed, std::string> open(const CameraLoad& load, const OwnFeed* replaced = nullptr) = 0;
 
     /// The longest time that the subscriber of an open feed has been waiting for a frame; 0: nobody is.

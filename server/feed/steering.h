@@ -35,8 +35,8 @@ public:
 
     static SteeringSeat join(const std::shared_ptr<Steering>& steering, Steerer steerer);
 
-    /// The newest pose that anybody chose; empty: the camera was never steered. Its `cut` is set if it or one before it,
-    /// since the last call, was a jump.
+    /// The newest pose that anybody chose; empty: the camera was never steered. Its `cut` is set if it or one before
+    /// it, since the last call, was a jump.
     std::optional<SteeredPose> sample();
 
 private:
@@ -69,8 +69,8 @@ public:
     /// False: it does not hold the lease.
     bool renew(TimePoint now);
 
-    /// Newest wins; a pose whose sequence number does not grow is passed over. Renews the lease. `pose.lease` is set here.
-    /// False: it does not hold the lease.
+    /// Newest wins; a pose whose sequence number does not grow is passed over. Renews the lease. `pose.lease` is set
+    /// here. False: it does not hold the lease.
     bool steer(SteeredPose pose, TimePoint now);
 
     /// What happened to it, oldest first.

@@ -89,7 +89,8 @@ Decoded<RecordHead> read_head(std::istream& file, std::uint64_t offset, std::uin
     }
     return RecordHead{.kind = static_cast<RecordKind>(kind),
                       .content_bytes = static_cast<std::uint32_t>(content_bytes),
-                      .crc32c = static_cast<std::uint32_t>(number_at(head.subspan(kKindBytes + kLengthBytes), kCrcBytes)),
+                      .crc32c =
+                          static_cast<std::uint32_t>(number_at(head.subspan(kKindBytes + kLengthBytes), kCrcBytes)),
                       .head_crc32c = codec::crc32c(head.first(kKindBytes + kLengthBytes))};
 }
 

@@ -23,7 +23,8 @@ metrics::Counter& counter(metrics::Registry& registry, const char* name, const c
 
 Recorder::Recorder(const std::shared_ptr<feed::Feed>& feed, RecorderSetup setup, metrics::Registry& registry)
     : setup_(std::move(setup)), channel_(feed->info().name),
-      frames_(counter(registry, "fieldcast_recorded_frames_total", "Frames that were written to a recording.", channel_)),
+      frames_(
+          counter(registry, "fieldcast_recorded_frames_total", "Frames that were written to a recording.", channel_)),
       bytes_(counter(registry, "fieldcast_recorded_bytes_total", "Bytes that were written to a recording.", channel_)),
       lost_(counter(registry, "fieldcast_recording_lost_frames_total",
                     "Frames missing in a recording: the disk was too slow.", channel_)),

@@ -19,8 +19,8 @@ struct RecorderSetup {
     std::uint64_t max_frames = 0;   ///< ends then; 0: when it is destroyed
 };
 
-/// Records a channel as one of its clients would watch it, so the channel never sleeps meanwhile. Never slows it: frames
-/// that the disk is too slow for are left out and counted.
+/// Records a channel as one of its clients would watch it, so the channel never sleeps meanwhile. Never slows it:
+/// frames that the disk is too slow for are left out and counted.
 class Recorder {
 public:
     /// `registry` must outlive it. Throws UserError if the file cannot be written or the channel refuses.

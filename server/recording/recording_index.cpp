@@ -115,8 +115,8 @@ RecordingIndex scan_frames(std::istream& file, std::uint64_t frames_begin, std::
         const auto mark = content ? mark_from_bytes(*content) : tl::unexpected(content.error());
         const char* const problem = mark ? order.problem_of(*mark) : nullptr;
         if (!mark || problem != nullptr) {
-            index.ignored = std::to_string(file_bytes - offset) + " bytes from byte " + std::to_string(offset) + " on: " +
-                            (mark ? problem : mark.error().message);
+            index.ignored = std::to_string(file_bytes - offset) + " bytes from byte " + std::to_string(offset) +
+                            " on: " + (mark ? problem : mark.error().message);
             return index;
         }
         index.frames.push_back({.mark = *mark, .offset = offset});

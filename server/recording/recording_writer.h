@@ -10,8 +10,8 @@
 
 namespace fieldcast::recording {
 
-/// Writes frames of a channel to a file, each whole or not at all: a file whose writer is killed can be read up to its last
-/// frame. Not thread-safe.
+/// Writes frames of a channel to a file, each whole or not at all: a file whose writer is killed can be read up to its
+/// last frame. Not thread-safe.
 class RecordingWriter {
 public:
     /// Replaces the file. `info.recorded` says what to record; the bundle is written if planes are among it. Throws
@@ -19,8 +19,8 @@ public:
     RecordingWriter(const std::filesystem::path& file, const feed::ChannelInfo& info);
     ~RecordingWriter(); ///< finishes; problems are logged
 
-    /// Writes `frame`, shown at `at` (any origin), unless it lacks something that is recorded: false. If its key frame is
-    /// not in the file, its strips refer to nothing. Throws std::runtime_error if the disk refuses.
+    /// Writes `frame`, shown at `at` (any origin), unless it lacks something that is recorded: false. If its key frame
+    /// is not in the file, its strips refer to nothing. Throws std::runtime_error if the disk refuses.
     bool add(const feed::EncodedFrame& frame, std::chrono::nanoseconds at);
 
     /// Writes the index; nothing can be added any more. Throws std::runtime_error if the disk refuses.

@@ -99,7 +99,8 @@ void ServiceMetrics::add(const std::string& channel, const session::SessionCount
     }
     for (const auto& [choice, bytes] : counts.plane_bytes) {
         add("fieldcast_plane_bytes_total", "Payload of complete frames, by plane and codec.",
-            {{"channel", channel}, {"plane", label_of(choice.semantic)}, {"codec", label_of(choice.encoding.codec)}}, bytes);
+            {{"channel", channel}, {"plane", label_of(choice.semantic)}, {"codec", label_of(choice.encoding.codec)}},
+            bytes);
     }
 }
 

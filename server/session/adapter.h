@@ -9,8 +9,8 @@
 
 namespace fieldcast::session {
 
-/// Fits what one client gets to its connection, if it allows that: knows the ladder of its configuration and says when to
-/// take another rung. The session makes the change, which is an ordinary epoch.
+/// Fits what one client gets to its connection, if it allows that: knows the ladder of its configuration and says when
+/// to take another rung. The session makes the change, which is an ordinary epoch.
 class Adapter {
 public:
     /// The client got what it asked for. Without `wanted.adaptation`, nothing is ever changed.

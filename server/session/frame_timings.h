@@ -16,7 +16,8 @@ namespace fieldcast::session {
 timing::MadeFrame made_frame(const std::string& channel, const feed::EncodedFrame& frame);
 
 /// Collects when the frames of one client were where, from what the session does and what the client acknowledges. A
-/// record is finished when the client has said what became of the frame, or when kMaxPending younger ones wait for that.
+/// record is finished when the client has said what became of the frame, or when kMaxPending younger ones wait for
+/// that.
 class FrameTimings {
 public:
     /// Off at first: then everything else does nothing.

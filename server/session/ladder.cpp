@@ -10,8 +10,8 @@ namespace fieldcast::session {
 
 namespace {
 
-// Expected bytes after a step, as a share of those before; see docs/benchmarks.md, "Codecs". They only choose how far to
-// go at once: what is measured afterwards decides.
+// Expected bytes after a step, as a share of those before; see docs/benchmarks.md, "Codecs". They only choose how far
+// to go at once: what is measured afterwards decides.
 constexpr double kJpegShareOfViews = 0.15;
 constexpr double kJpegShareOfPlanes = 0.5; // depth, normal, id and material stay as they are
 constexpr double kQualityShare = 0.7;
@@ -166,9 +166,10 @@ private:
         const Rung& before = rungs_.back();
         const Rung& first = rungs_.front();
         const double encoding = quality_ > 0 ? kJpegShareOfViews : 1.0;
-        const double rate = before.wanted.max_frames_per_second() > 0.0F
-                                ? static_cast<double>(before.wanted.max_frames_per_second() / granted_.frames_per_second)
-                                : 1.0;
+        const double rate =
+            before.wanted.max_frames_per_second() > 0.0F
+                ? static_cast<double>(before.wanted.max_frames_per_second() / granted_.frames_per_second)
+                : 1.0;
         const double cost = planes / views * encoding * std::min(rate, 1.0);
         if (cost >= before.cost) {
             return;

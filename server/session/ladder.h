@@ -15,8 +15,9 @@ struct Rung {
     std::string change; ///< from the rung before, for people
 };
 
-/// What a server may do about a bad connection, within `wanted.adaptation`, the least painful first: codec, quality, frame
-/// rate, size of the views, number of views, delivery mode. Rung 0 is what was asked for and got `granted`; costs fall.
+/// What a server may do about a bad connection, within `wanted.adaptation`, the least painful first: codec, quality,
+/// frame rate, size of the views, number of views, delivery mode. Rung 0 is what was asked for and got `granted`; costs
+/// fall.
 std::vector<Rung> make_ladder(const v1::Configure& wanted, const Configuration& granted);
 
 } // namespace fieldcast::session

@@ -16,8 +16,9 @@ constexpr double kUsableShare = 0.8;
 /// Share of frames that may be missing; some always are, when client and server do not keep step.
 constexpr double kAcceptedMisses = 0.1;
 
-/// Share of the bound beyond which missing frames are blamed on the connection. Jitter makes frames miss as well, because
-/// credits follow the smallest round trip, and delays all of half a second by a third of 100 ms (simulated, 50 ± 20 ms each way).
+/// Share of the bound beyond which missing frames are blamed on the connection. Jitter makes frames miss as well,
+/// because credits follow the smallest round trip, and delays all of half a second by a third of 100 ms (simulated, 50
+/// ± 20 ms each way).
 constexpr double kStarvedShare = 0.4;
 
 /// Levels passed over at once, at most: expectations are rough.
@@ -56,7 +57,8 @@ std::optional<LevelChange> LevelController::decide(TimePoint now) {
         .delivered_bytes_per_second = static_cast<std::uint64_t>(static_cast<double>(window.bytes) / seconds)};
     const double missed_share =
         static_cast<double>(window.missed) / static_cast<double>(window.missed + window.frames);
-    const bool lacks_frames = missed_share > kAcceptedMisses && window.standing_delay > kStarvedShare * max_queue_delay_;
+    const bool lacks_frames =
+        missed_share > kAcceptedMisses && window.standing_delay > kStarvedShare * max_queue_delay_;
     const bool is_starved = lacks_frames && starved_before_;
     starved_before_ = lacks_frames;
     if (window.standing_delay > max_queue_delay_ || is_starved) {

@@ -23,14 +23,14 @@ struct LevelChange {
     std::uint64_t delivered_bytes_per_second = 0; ///< meanwhile
 };
 
-/// Chooses how much a client is sent: level 0 is what it asked for, each further level costs less. Time is handed in, so
-/// it can be tested with any.
+/// Chooses how much a client is sent: level 0 is what it asked for, each further level costs less. Time is handed in,
+/// so it can be tested with any.
 ///
 /// Delay is judged by the *smallest* value in a window of half a second and three frames at least: jitter and single
-/// losses leave some frames undelayed, a queue that stands does not. Above the bound it goes down at once, as far as the
-/// excess says is needed; also after two windows above two fifths of it in which more than a tenth of the frames could not
-/// be begun, because then credits keep the queue short at the price of frames. It goes up by one level after a time below half the bound; if that has to be taken
-/// back soon, it waits twice as long the next time.
+/// losses leave some frames undelayed, a queue that stands does not. Above the bound it goes down at once, as far as
+/// the excess says is needed; also after two windows above two fifths of it in which more than a tenth of the frames
+/// could not be begun, because then credits keep the queue short at the price of frames. It goes up by one level after
+/// a time below half the bound; if that has to be taken back soon, it waits twice as long the next time.
 class LevelController {
 public:
     /// `costs`: expected bytes per second of each level, in any unit, falling; at least one.

@@ -13,7 +13,8 @@ namespace fieldcast::session {
 /// What one acknowledged frame says about the way to the client.
 struct LinkSample {
     std::uint64_t bytes = 0;
-    std::chrono::nanoseconds queue_delay{0}; ///< time on the way beyond the smallest round trip: waiting and transmission
+    std::chrono::nanoseconds queue_delay{
+        0}; ///< time on the way beyond the smallest round trip: waiting and transmission
 };
 
 /// Measures how long frames are on the way to one client, from their acknowledgements.

@@ -40,7 +40,8 @@ public:
     /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
     void go_away(const std::string& reason, TimePoint at, CloseReason why = CloseReason::kDrained);
 
-    /// Watches deadlines, and whether the configuration fits the connection; call it several times per heartbeat interval.
+    /// Watches deadlines, and whether the configuration fits the connection; call it several times per heartbeat
+    /// interval.
     void on_tick(TimePoint now);
 
     /// The client was told to go and has not gone in time: cut the stream.

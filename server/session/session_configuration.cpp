@@ -58,8 +58,8 @@ std::optional<Refusal> Session::admit(Configuration& wanted) {
     if (wanted.feed->opener() != nullptr && !steering_.may_steer()) {
         return Refusal{.reason = v1::REFUSAL_REASON_ROLE_TOO_LOW,
                        .field = "channel",
-                       .message = "channel '" + wanted.feed->info().name + "' gives every client a camera to steer; that " +
-                                  "needs the role steer"};
+                       .message = "channel '" + wanted.feed->info().name +
+                                  "' gives every client a camera to steer; that " + "needs the role steer"};
     }
     const std::uint64_t old_pixels = configuration_ ? made_pixels(*configuration_) : 0;
     const std::uint64_t new_pixels = made_pixels(wanted);

@@ -32,7 +32,9 @@ public:
     /// The next message to send.
     std::optional<v1::ServerMessage> next(TimePoint now);
     bool may_steer() const { return steerer_.right != feed::SteeringRight::kNone; }
-    std::size_t waiting() const { return answers_.size(); } ///< messages to send, those of other threads' doing excepted
+    std::size_t waiting() const {
+        return answers_.size();
+    } ///< messages to send, those of other threads' doing excepted
 
 private:
     void steer(const v1::SteerCamera& message, const glm::mat4& pose, TimePoint now);

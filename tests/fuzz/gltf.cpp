@@ -55,7 +55,8 @@ void gltf(Bytes input) {
         const scene::Scene scene = scene::load_scene(file, small_limits());
         expect_sound(scene);
         constexpr auto kTimeRange = std::numeric_limits<std::int64_t>();
-        for (const std::int64_t time_ns : {std::int64_t{0}, std::int64_t{370'000'000}, kTimeRange.min(), kTimeRange.max()}) {
+        for (const std::int64_t time_ns :
+             {std::int64_t{0}, std::int64_t{370'000'000}, kTimeRange.min(), kTimeRange.max()}) {
             use(scene, time_ns);
         }
     });

@@ -175,8 +175,9 @@ scene::GltfBuilder scene_with_everything() {
     const int lamp = builder.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     const int times = builder.add_floats({0.0F, 1.0F}, "SCALAR");
     const int values = builder.add_floats({0.0F, 0.0F, 0.0F, 1.0F, 2.0F, 3.0F}, "VEC3");
-    builder.add("animations", {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "LINEAR"}}}},
-                               {"channels", {{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "translation"}}}}}}});
+    builder.add("animations",
+                {{"samplers", {{{"input", times}, {"output", values}, {"interpolation", "LINEAR"}}}},
+                 {"channels", {{{"sampler", 0}, {"target", {{"node", lamp}, {"path", "translation"}}}}}}});
     return builder;
 }
 

@@ -22,7 +22,8 @@ public:
         if ((wish & 4U) != 0) {
             wish_.adaptation.emplace();
         }
-        wish_.codecs = {codec::CodecId::kH264, codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered, codec::CodecId::kRaw};
+        wish_.codecs = {codec::CodecId::kH264, codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered,
+                        codec::CodecId::kRaw};
     }
 
     void take(v1::ServerMessage message) {

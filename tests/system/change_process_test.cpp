@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes on a running stream, with both programs. Every frame of the server is the same here (--clock frames --frames 1:
-// the first frame again and again), so the picture of a new epoch must be the one that a fresh client with that
+// Changes on a running stream, with both programs. Every frame of the server is the same here (--clock frames --frames
+// 1: the first frame again and again), so the picture of a new epoch must be the one that a fresh client with that
 // configuration gets, to the last bit: the files are compared byte by byte.
 #include "running_server.h"
 #include "test_folder.h"
@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr auto kPatience = 240s; // two cores, busy, software Vulkan, cold pipeline cache
 
-/// Frames that a change may cost: one being rendered, one being encoded, one waiting and one being sent for the old wish.
+/// Frames that a change may cost: one being rendered, one being encoded, one waiting and one being sent for the old
+/// wish.
 constexpr int kFramesPerChange = 4;
 
 class Changes : public testing::Test {
@@ -47,7 +48,9 @@ protected:
         EXPECT_EQ(program->exit_code(kPatience), 0) << program->text();
     }
 
-    nlohmann::json statistics(const std::string& name) { return nlohmann::json::parse(text_of(folder_ / (name + ".json"))); }
+    nlohmann::json statistics(const std::string& name) {
+        return nlohmann::json::parse(text_of(folder_ / (name + ".json")));
+    }
 
     /// The one quilt in a folder: name and content.
     static std::pair<std::string, std::string> quilt_in(const fs::path& folder) {
@@ -60,8 +63,9 @@ protected:
     }
 
     TestFolder folder_;
-    RunningServer server_{FIELDCAST_SERVER,
-                          {"--frames", "1", "--frame-log", folder_ / "frames.jsonl", "--trace", folder_ / "trace.json"}};
+    RunningServer server_{
+        FIELDCAST_SERVER,
+        {"--frames", "1", "--frame-log", folder_ / "frames.jsonl", "--trace", folder_ / "trace.json"}};
 };
 
 TEST_F(Changes, PicturesAreThoseOfAFreshClientAndNothingIsLostBesides) {

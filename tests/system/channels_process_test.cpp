@@ -130,8 +130,8 @@ TEST(SharedDevice, AnExpensiveChannelGetsNoMoreOfItThanACheapOne) {
     std::printf("expensive %.3f s, %.1f ms a frame; cheap %.3f s, %.1f ms a frame; Jain %.4f\n", a, cost_a * 1e3, b,
                 cost_b * 1e3, jain);
     ASSERT_GT(cost_a, 1.5 * cost_b) << "otherwise nothing is tested";
-    // Turns one after the other would give (r + 1)^2 / (2 (r^2 + 1)) for costs in the ratio r: 0.96 for 1.5, 0.74 for 4.
-    // Here two frames of eight may be on the wrong side of the two moments: 14^2 / (2 (8^2 + 6^2)) = 0.98.
+    // Turns one after the other would give (r + 1)^2 / (2 (r^2 + 1)) for costs in the ratio r: 0.96 for 1.5, 0.74
+    // for 4. Here two frames of eight may be on the wrong side of the two moments: 14^2 / (2 (8^2 + 6^2)) = 0.98.
     EXPECT_GT(jain, 0.97);
 }
 

@@ -58,12 +58,13 @@ private:
     std::unique_ptr<grpc::Server> server_;
 };
 
-/// The answer that grants what `configure` asks for, with views of 64×36 pixels unless it says. Its epoch is the number of
-/// the request.
+/// The answer that grants what `configure` asks for, with views of 64×36 pixels unless it says. Its epoch is the number
+/// of the request.
 v1::ServerMessage configured_message(const v1::Configure& configure);
 
 /// All messages of a frame of views whose pixels depend on its id.
-std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uint64_t frame_id, std::uint32_t epoch = 1);
+std::vector<v1::ServerMessage> views_messages(const wire::ViewSet& set, std::uint64_t frame_id,
+                                              std::uint32_t epoch = 1);
 
 /// The grey of every pixel of `views_messages`.
 std::uint8_t fake_grey(std::uint64_t frame_id);

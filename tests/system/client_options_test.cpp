@@ -79,7 +79,8 @@ TEST(Options, WarpNeedsNoSceneAndHasAResidualLayerUnlessToldOtherwise) {
 }
 
 TEST(Options, IlluminationMayBeOnePlane) {
-    const Invocation invocation = read({"--mode", "scene", "--planes", "total-light", "--change", "3s:planes=g-buffer"});
+    const Invocation invocation =
+        read({"--mode", "scene", "--planes", "total-light", "--change", "3s:planes=g-buffer"});
     ASSERT_TRUE(invocation.options) << invocation.text;
     EXPECT_EQ(invocation.options->play.wish.planes, client::net::PlaneWish::kTotalLight);
     EXPECT_EQ(invocation.options->play.changes.at(0).wish.planes, client::net::PlaneWish::kWithGBuffer);
@@ -138,8 +139,8 @@ TEST(Options, HelpHasExamplesAndExitsWithZero) {
 }
 
 TEST(Options, ChangesBuildOnEachOther) {
-    const Invocation invocation = read({"--grid", "3x3", "--change", "3s:grid=5x5,quality=40,codec=jpeg+zstd", "--change",
-                                        "20f:mode=scene,size=320x180", "--cache", "c"});
+    const Invocation invocation = read({"--grid", "3x3", "--change", "3s:grid=5x5,quality=40,codec=jpeg+zstd",
+                                        "--change", "20f:mode=scene,size=320x180", "--cache", "c"});
     ASSERT_TRUE(invocation.options) << invocation.text;
     const client::play::PlayOptions& play = invocation.options->play;
     EXPECT_EQ(play.wish.rows, 3U);
@@ -157,9 +158,10 @@ TEST(Options, ChangesBuildOnEachOther) {
 }
 
 TEST(Options, ChangesThatCannotBeReadAreNamed) {
-    for (const auto& [text, words] : {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"),
-                                      std::pair("3s:grid=2", "grid 2"), std::pair("3s:colour=red", "keys are grid"),
-                                      std::pair("3s:quality=101", "quality=101"), std::pair("-1s:grid=2x2", "says when")}) {
+    for (const auto& [text, words] :
+         {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid 2"),
+          std::pair("3s:colour=red", "keys are grid"), std::pair("3s:quality=101", "quality=101"),
+          std::pair("-1s:grid=2x2", "says when")}) {
         const Invocation invocation = read({"--change", text});
         EXPECT_FALSE(invocation.options) << text;
         EXPECT_EQ(invocation.exit_code, 2);

@@ -395,7 +395,8 @@ TEST_F(SessionTest, AsksForSomethingElseOnTheRunningStream) {
         const auto asked = call.read_until(v1::ClientMessage::kConfigure);
         call.send(views_messages(before, 2)); // still of the old epoch
         call.send(configured_message(asked->configure()));
-        call.send(views_messages(*wire::from_proto(configured_message(asked->configure()).configured().view_set()), 3, 2));
+        call.send(
+            views_messages(*wire::from_proto(configured_message(asked->configure()).configured().view_set()), 3, 2));
         call.read_rest();
     });
     ASSERT_TRUE(next<FrameArrived>());

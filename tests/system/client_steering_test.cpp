@@ -124,7 +124,8 @@ protected:
     static void send_frame(FakeCall& call, const wire::ViewSet& set, std::uint64_t id, const v1::SteerCamera* pose) {
         auto messages = views_messages(set, id);
         if (pose != nullptr) {
-            v1::AppliedPose& applied = *messages.front().mutable_frame_chunk()->mutable_header()->mutable_applied_pose();
+            v1::AppliedPose& applied =
+                *messages.front().mutable_frame_chunk()->mutable_header()->mutable_applied_pose();
             applied.set_lease(4);
             applied.set_sequence(pose->sequence());
             applied.set_client_time_ns(pose->client_time_ns());

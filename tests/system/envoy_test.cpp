@@ -56,7 +56,8 @@ protected:
     }
 
     std::vector<std::string> arguments(std::vector<std::string> further) const {
-        const std::vector<std::string> always{"-c", folder_ / "envoy.yaml", "--concurrency", "1", "--use-dynamic-base-id"};
+        const std::vector<std::string> always{"-c", folder_ / "envoy.yaml", "--concurrency", "1",
+                                              "--use-dynamic-base-id"};
         further.insert(further.begin(), always.begin(), always.end());
         return further;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A server whose clients have a camera each: they see different things at the same moment, and no more of them than fit.
+// A server whose clients have a camera each: they see different things at the same moment, and no more of them than
+// fit.
 #include "running_server.h"
 #include "server_client.h"
 

@@ -126,14 +126,13 @@ protected:
 
     bool start_server() {
         const fs::path port_file = folder_ / "port";
-        server_ = std::make_unique<Program>(FIELDCAST_SERVER,
-                                            std::vector<std::string>{"--scene", "scenes/atelier/atelier.gltf", "--size",
-                                                                     "160x90", "--fps", "2", "--clock", "frames",
-                                                                     "--largest-grid", "3x3", "--holes",
-                                                                     "isolated,cascade,source,denoise", // no history of views
-                                                                     "--listen", "127.0.0.1:0",
-                                                                     "--port-file", port_file},
-                                            folder_ / "server.log");
+        server_ = std::make_unique<Program>(
+            FIELDCAST_SERVER,
+            std::vector<std::string>{"--scene", "scenes/atelier/atelier.gltf", "--size", "160x90", "--fps", "2",
+                                     "--clock", "frames", "--largest-grid", "3x3", "--holes",
+                                     "isolated,cascade,source,denoise", // no history of views
+                                     "--listen", "127.0.0.1:0", "--port-file", port_file},
+            folder_ / "server.log");
         const auto deadline = std::chrono::steady_clock::now() + kLongestRun;
         while (text_of(port_file).empty() && server_->is_running() && std::chrono::steady_clock::now() < deadline) {
             std::this_thread::sleep_for(50ms);
@@ -187,8 +186,8 @@ protected:
         }
     }
 
-    /// Largest over outer views of the frames that both clients wrote: how far `other` is from `one`, compared with how far
-    /// the middle view is from it. Negative: no frame reached both. Fails where `other` is black and `one` is not.
+    /// Largest over outer views of the frames that both clients wrote: how far `other` is from `one`, compared with how
+    /// far the middle view is from it. Negative: no frame reached both. Fails where `other` is black and `one` is not.
     double largest_difference(const std::string& one, const std::string& other) {
         double largest = -1.0;
         const std::set<std::string> others = frame_folders(folder_ / other);

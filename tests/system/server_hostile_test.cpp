@@ -155,7 +155,8 @@ TEST_F(Hostile, AConnectionWithoutCallsIsClosed) {
 }
 
 TEST_F(Hostile, GarbageInsteadOfHttpIsClosed) {
-    const std::string answer = http_get(served_.port(), "GET / HTTP/1.1\r\nHost: x\r\n\r\n" + std::string(4096, '\xFF'));
+    const std::string answer =
+        http_get(served_.port(), "GET / HTTP/1.1\r\nHost: x\r\n\r\n" + std::string(4096, '\xFF'));
     EXPECT_EQ(answer.find("200"), std::string::npos);
     EXPECT_TRUE(bystander_.gets_more_frames());
 }

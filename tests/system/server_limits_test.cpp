@@ -15,7 +15,8 @@ using Kind = v1::ServerMessage;
 /// A scene download that reads only when told to.
 class Download {
 public:
-    explicit Download(int port) : connection_(connect_with_small_window(port)), stub_(v1::Catalog::NewStub(connection_)) {
+    explicit Download(int port)
+        : connection_(connect_with_small_window(port)), stub_(v1::Catalog::NewStub(connection_)) {
         v1::FetchSceneRequest request;
         const auto hash = synthetic_info().scene_hash;
         request.set_scene_hash(hash.data(), hash.size());

@@ -17,7 +17,9 @@ constexpr feed::CameraLoad kTenFrames{.frames_per_second = 10.0F, .view_pixels =
 
 class AdmissionTest : public testing::Test {
 protected:
-    AdmissionTest() { admission_.estimate("hall", {.source_ms = 10.0, .ms_per_view_megapixel = 20.0}); } // 30 ms a frame
+    AdmissionTest() {
+        admission_.estimate("hall", {.source_ms = 10.0, .ms_per_view_megapixel = 20.0});
+    } // 30 ms a frame
 
     void observe(Admission::Id id, std::chrono::milliseconds used) {
         for (int i = 0; i < 60; ++i) { // 0.8^58: a millionth of what was is left

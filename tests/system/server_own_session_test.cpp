@@ -18,8 +18,9 @@ const feed::Steerer kAnn{.name = "ann", .right = feed::SteeringRight::kSteer};
 class OwnSession : public testing::Test {
 protected:
     std::unique_ptr<Session> open(const feed::Steerer& steerer = kAnn) {
-        return std::make_unique<Session>(std::vector{own_, other_, fixed_}, Limits{}, [](const feed::FramePtr&) {}, now_,
-                                         PeerBudgets{.cameras = peer_cameras_}, steerer);
+        return std::make_unique<Session>(
+            std::vector{own_, other_, fixed_}, Limits{}, [](const feed::FramePtr&) {}, now_,
+            PeerBudgets{.cameras = peer_cameras_}, steerer);
     }
 
     /// The next message that is no heartbeat, or one of no kind.
@@ -34,7 +35,8 @@ protected:
         return {};
     }
 
-    v1::ServerMessage configure(Session& session, const std::string& channel, float fps = 1.0F, std::uint32_t side = 1) {
+    v1::ServerMessage configure(Session& session, const std::string& channel, float fps = 1.0F,
+                                std::uint32_t side = 1) {
         v1::ClientMessage message;
         v1::Configure& wanted = *message.mutable_configure();
         wanted.set_channel(channel);
@@ -125,7 +127,8 @@ TEST_F(OwnSession, WhatDoesNotFitIsRefusedAndNothingChanges) {
     ASSERT_EQ(refused.message_case(), Kind::kRefused);
     EXPECT_EQ(refused.refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
     EXPECT_EQ(refused.refused().field(), "channel");
-    EXPECT_THAT(refused.refused().message(), HasSubstr("61 ms of the device per second asked")); // 2304 pixels: 1.009 ms
+    EXPECT_THAT(refused.refused().message(),
+                HasSubstr("61 ms of the device per second asked")); // 2304 pixels: 1.009 ms
     EXPECT_THAT(refused.refused().message(), HasSubstr("50 of 100 are left"));
     EXPECT_EQ(feed_of(*bob), fixed_);
     EXPECT_EQ(fixed_->subscriber_count(), 1U);
@@ -177,7 +180,8 @@ TEST_F(OwnSession, FromOneChannelToTheNextWhenEverythingIsTaken) {
     EXPECT_EQ(configure(*bob, "other", 45.0F).configured().channel(), "other");
     EXPECT_EQ(configure(*ann, "other", 50.0F).configured().channel(), "other");
     const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (!(workshop_.has(feed_of(*ann)) && workshop_.has(feed_of(*bob))) && std::chrono::steady_clock::now() < deadline) {
+    while (!(workshop_.has(feed_of(*ann)) && workshop_.has(feed_of(*bob))) &&
+           std::chrono::steady_clock::now() < deadline) {
         std::this_thread::yield();
     }
     EXPECT_TRUE(workshop_.wait_until_living(2));

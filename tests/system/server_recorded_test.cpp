@@ -88,7 +88,8 @@ TEST_F(Recorded, OtherSpacingsAreOtherViews) {
 
 TEST_F(Recorded, CodecsThatWereNotRecordedArePassedOver) {
     want_codecs(v1::PLANE_SEMANTIC_COLOUR, {v1::CODEC_RAW, v1::CODEC_JPEG, v1::CODEC_ZSTD_FILTERED});
-    EXPECT_EQ(encoding(), (codec::Encoding{.codec = codec::CodecId::kJpeg, .quality = 40})) << "wanted before ZSTD_FILTERED";
+    EXPECT_EQ(encoding(), (codec::Encoding{.codec = codec::CodecId::kJpeg, .quality = 40}))
+        << "wanted before ZSTD_FILTERED";
     wanted_.clear_codecs();
     want_codecs(v1::PLANE_SEMANTIC_COLOUR, {v1::CODEC_JPEG});
     EXPECT_EQ(encoding(), (codec::Encoding{.codec = codec::CodecId::kJpeg, .quality = 40}));

@@ -113,7 +113,8 @@ TEST_F(RecordingTest, GivesBackEveryByte) {
     EXPECT_EQ(recording.frames()[0].mark.key_frame_id, 0U);
     EXPECT_EQ(recording.frames()[3].mark.key_frame_id, 5U);
     EXPECT_EQ(recording.frames()[5].mark.at_ns, 100'000'000);
-    EXPECT_NE(bytes_of(*recording.read(2), views_wish(info_), true), bytes_of(*recording.read(2), views_wish(info_), false))
+    EXPECT_NE(bytes_of(*recording.read(2), views_wish(info_), true),
+              bytes_of(*recording.read(2), views_wish(info_), false))
         << "frame 6 refers to frame 5: otherwise the test shows nothing about key frames";
 }
 

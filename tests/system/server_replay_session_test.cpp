@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions of a replayed recording without a transport: everything of the server that has threads of its own, for the
-// thread sanitizer. (The distribution's gRPC is built without it, so that handovers between its threads look like races.)
+// thread sanitizer. (The distribution's gRPC is built without it, so that handovers between its threads look like
+// races.)
 #include "core/base/guarded.h"
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
@@ -64,16 +65,17 @@ struct Client {
     }
 };
 
-/// Sessions of both kinds come, change their minds and go while two replays are shown and one of them is recorded again.
+/// Sessions of both kinds come, change their minds and go while two replays are shown and one of them is recorded
+/// again.
 TEST(ReplaySessions, ComeAndGo) {
     const test::TestFolder folder;
     test::write_synthetic_recording(folder / "hall.fcrec", {"views:2x2:32x18", "planes"}, 7);
     metrics::Registry registry;
     recording::Replay replay({.file = folder / "hall.fcrec", .name = "", .frames_per_second = 100.0F}, registry);
     recording::Replay other({.file = folder / "hall.fcrec", .name = "other", .frames_per_second = 80.0F}, registry);
-    recording::Recorder recorder(replay.feed(),
-                                 {.file = folder / "again.fcrec", .wishes = replay.feed()->info().recorded, .max_frames = 5},
-                                 registry);
+    recording::Recorder recorder(
+        replay.feed(), {.file = folder / "again.fcrec", .wishes = replay.feed()->info().recorded, .max_frames = 5},
+        registry);
     std::vector<std::jthread> clients;
     for (int i = 0; i < 4; ++i) {
         clients.emplace_back([&, i] {

@@ -105,9 +105,9 @@ TEST_F(ServedReplay, RefusalsNameWhatWasRecorded) {
     EXPECT_NE(answer->refused().message().find("recorded: views 3x3 of 64x36 zstd"), std::string::npos);
 }
 
-/// Clients of both kinds come, change their minds, stop reading and vanish while frames are published and a scrape asks for
-/// numbers; then the server drains.
-/// Until the configuration is confirmed. Frames of the one before return their credits, or there may be none left.
+/// Clients of both kinds come, change their minds, stop reading and vanish while frames are published and a scrape asks
+/// for numbers; then the server drains. Until the configuration is confirmed. Frames of the one before return their
+/// credits, or there may be none left.
 bool read_configured(test::OpenCall& call) {
     for (auto message = call.read(); message; message = call.read()) {
         if (message->message_case() == v1::ServerMessage::kConfigured) {

@@ -25,9 +25,11 @@ class SteeringService : public testing::Test {
 protected:
     SteeringService() {
         std::string lines;
-        for (const auto& [name, role] : {std::pair("vera", access::Role::kView), std::pair("ann", access::Role::kSteer),
-                                         std::pair("bob", access::Role::kSteer), std::pair("olga", access::Role::kAdmin)}) {
-            lines += access::token_line({.name = name, .role = role, .hash = access::hash_token(token_of(name))}) + "\n";
+        for (const auto& [name, role] :
+             {std::pair("vera", access::Role::kView), std::pair("ann", access::Role::kSteer),
+              std::pair("bob", access::Role::kSteer), std::pair("olga", access::Role::kAdmin)}) {
+            lines +=
+                access::token_line({.name = name, .role = role, .hash = access::hash_token(token_of(name))}) + "\n";
         }
         write_file(folder_ / "tokens.txt", lines);
         server_ = std::make_unique<service::GrpcServer>(

@@ -248,7 +248,8 @@ TEST_F(SteeringSession, PosesThatAreNoneAreDenied) {
     request();
     next();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    for (const auto& [index, value] : {std::pair(9, kNan), std::pair(0, 1.01F), std::pair(0, -1.0F), std::pair(11, 2e9F)}) {
+    for (const auto& [index, value] :
+         {std::pair(9, kNan), std::pair(0, 1.01F), std::pair(0, -1.0F), std::pair(11, 2e9F)}) {
         v1::ClientMessage bad = pose(2);
         bad.mutable_steer_camera()->set_world_from_camera(index, value);
         session_.on_message(bad, now_);

@@ -27,7 +27,8 @@ Views soft_views(const ViewGrid& grid, std::uint64_t frame_id) {
         const int shift = 2 * view.position.col_halves + view.position.row_halves;
         for (std::size_t i = 0; i < view.image.bytes.size(); ++i) {
             const double x = static_cast<double>(i / 3 % 48) + shift;
-            view.image.bytes[i] = static_cast<std::byte>(128.0 + 90.0 * std::sin(0.3 * x + 0.05 * static_cast<double>(i / 144)));
+            view.image.bytes[i] =
+                static_cast<std::byte>(128.0 + 90.0 * std::sin(0.3 * x + 0.05 * static_cast<double>(i / 144)));
         }
     }
     return views;
@@ -99,7 +100,8 @@ TEST(BaseView, ViewsArePredictedAndDecodeInEveryGrid) {
             expected.views.push_back(*std::ranges::find(sent.views, position, &View::position));
         }
         ASSERT_EQ(views.views.size(), expected.views.size());
-        EXPECT_LE(largest_error(views, expected), 30); // a quantiser of 24 has steps of 10; colours have half the pixels
+        EXPECT_LE(largest_error(views, expected),
+                  30); // a quantiser of 24 has steps of 10; colours have half the pixels
     }
 }
 

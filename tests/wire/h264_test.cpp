@@ -85,7 +85,8 @@ TEST(H264, SamePictureGivesSameBytes) {
     const RgbSize size{64, 48};
     const Bytes rgb = soft_rgb(size);
     EXPECT_EQ(encode_h264(rgb, size, 75), encode_h264(rgb, size, 75));
-    EXPECT_EQ(encode_h264_from(rgb, soft_rgb(size, 2.0), size, 75), encode_h264_from(rgb, soft_rgb(size, 2.0), size, 75));
+    EXPECT_EQ(encode_h264_from(rgb, soft_rgb(size, 2.0), size, 75),
+              encode_h264_from(rgb, soft_rgb(size, 2.0), size, 75));
 }
 
 TEST(H264, RefusesWhatIsNotOnePicture) {

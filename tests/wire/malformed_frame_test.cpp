@@ -76,31 +76,32 @@ TEST(MalformedFrame, HostilePlaneHeaders) {
 }
 
 TEST(MalformedFrame, HostileStrips) {
-    expect_refused(source_frame(),
-                   {
-                       {"strip.part", 1, [](auto& c) { c.mutable_strip()->set_part(std::uint32_t{kUsualFormats.size()}); }},
-                       {"strip.part", 1, [](auto& c) { c.mutable_strip()->set_part(kHuge); }},
-                       {"is next", 1, [](auto& c) { c.mutable_strip()->set_first_row(1); }},
-                       {"is next", 1, [](auto& c) { c.mutable_strip()->set_first_row(kHuge); }},
-                       {"is next", 1, [](auto& c) { c.mutable_strip()->set_row_count(0); }},
-                       {"is next", 1, [](auto& c) { c.mutable_strip()->set_row_count(kHuge); }},
-                       {"at most", 1, [](auto& c) { c.mutable_strip()->set_strip_bytes(kHuge); }},
-                       {"at most", 1, [](auto& c) { c.mutable_strip()->set_strip_bytes(0); }},
-                       {"from offset", 1, [](auto& c) { c.mutable_strip()->set_slice_offset(1); }},
-                       {"are missing", 1, [](auto& c) { c.clear_payload(); }},
-                       {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_slice_offset(0); }},
-                       {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_part(1); }},
-                       {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_strip_bytes(100); }},
-                       {"are missing", 2, [](auto& c) { c.set_payload(std::string(1 << 20, 'x')); }},
-                       {"payload of", 2, [](auto& c) { c.set_payload(std::string((2 << 20) + 1, 'x')); }},
-                       {"neither header", 2, [](auto& c) { c.clear_content(); }},
-                       {"trailer with payload", kLast, [](auto& c) { c.set_payload("x"); }},
-                       {"ends at row", 1,
-                        [](auto& c) {
-                            c.mutable_trailer();
-                            c.clear_payload();
-                        }},
-                   });
+    expect_refused(
+        source_frame(),
+        {
+            {"strip.part", 1, [](auto& c) { c.mutable_strip()->set_part(std::uint32_t{kUsualFormats.size()}); }},
+            {"strip.part", 1, [](auto& c) { c.mutable_strip()->set_part(kHuge); }},
+            {"is next", 1, [](auto& c) { c.mutable_strip()->set_first_row(1); }},
+            {"is next", 1, [](auto& c) { c.mutable_strip()->set_first_row(kHuge); }},
+            {"is next", 1, [](auto& c) { c.mutable_strip()->set_row_count(0); }},
+            {"is next", 1, [](auto& c) { c.mutable_strip()->set_row_count(kHuge); }},
+            {"at most", 1, [](auto& c) { c.mutable_strip()->set_strip_bytes(kHuge); }},
+            {"at most", 1, [](auto& c) { c.mutable_strip()->set_strip_bytes(0); }},
+            {"from offset", 1, [](auto& c) { c.mutable_strip()->set_slice_offset(1); }},
+            {"are missing", 1, [](auto& c) { c.clear_payload(); }},
+            {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_slice_offset(0); }},
+            {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_part(1); }},
+            {"does not continue", 2, [](auto& c) { c.mutable_strip()->set_strip_bytes(100); }},
+            {"are missing", 2, [](auto& c) { c.set_payload(std::string(1 << 20, 'x')); }},
+            {"payload of", 2, [](auto& c) { c.set_payload(std::string((2 << 20) + 1, 'x')); }},
+            {"neither header", 2, [](auto& c) { c.clear_content(); }},
+            {"trailer with payload", kLast, [](auto& c) { c.set_payload("x"); }},
+            {"ends at row", 1,
+             [](auto& c) {
+                 c.mutable_trailer();
+                 c.clear_payload();
+             }},
+        });
 }
 
 TEST(MalformedFrame, HostileViews) {

@@ -71,7 +71,8 @@ TEST_F(Toml, IsBounded) {
 }
 
 TEST_F(Toml, ReadsTablesWithTheirLines) {
-    read("name = \"a\"\n[[group]]\ncount = 2\nlimits = { fps = 3 }\n\n[target]\naddress = \"x\"\n[[group]]\ncount = 4\n");
+    read("name = \"a\"\n[[group]]\ncount = 2\nlimits = { fps = 3 }\n\n[target]\naddress = \"x\"\n[[group]]\ncount = "
+         "4\n");
     const TomlTree tree = read_toml_tree(file_);
     EXPECT_THAT(tree.problems, IsEmpty());
     ASSERT_EQ(tree.root.entries.size(), 1U);

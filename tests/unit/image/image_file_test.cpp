@@ -233,7 +233,8 @@ TEST(ReadRgbF32, RefusesOtherFiles) {
 }
 
 /// An EXR file of 3 × 2 pixels with `value` written `at` bytes behind the first `name` in it.
-void write_changed_exr(const std::filesystem::path& file, const std::string& name, std::size_t at, std::uint32_t value) {
+void write_changed_exr(const std::filesystem::path& file, const std::string& name, std::size_t at,
+                       std::uint32_t value) {
     write_exr(file, RgbF32{3, 2, std::vector<glm::vec3>(6)});
     std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};

@@ -65,9 +65,10 @@ RgbF32 with_noise(const RgbF32& clean, float deviation, std::uint32_t seed) {
 }
 
 // What an image scores against a noisy reference and against its two halves, compared with the clean one. Noise of 0.03
-// in the mean is three times that of references of 1024 samples. The sums run over 256×256 pixels: products of two halves'
-// noise have a deviation of 0.0018 per pixel and channel, hence 4e-6 in their mean, a hundredth of the squared RMSE, and
-// 0.005 of the RMSE. SSIM is bent by the covariance that noise has within one window, of either sign and cut off at 0.
+// in the mean is three times that of references of 1024 samples. The sums run over 256×256 pixels: products of two
+// halves' noise have a deviation of 0.0018 per pixel and channel, hence 4e-6 in their mean, a hundredth of the squared
+// RMSE, and 0.005 of the RMSE. SSIM is bent by the covariance that noise has within one window, of either sign and cut
+// off at 0.
 TEST(Metrics, KnowWhatTheyWouldBeWithoutNoiseOfTheReference) {
     RgbF32 clean{256, 256, {}};
     RgbF32 image{256, 256, {}};

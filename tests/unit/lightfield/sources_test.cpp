@@ -25,15 +25,17 @@ TEST(Sources, ConfigurationsOfThePaper) {
 TEST(Sources, CornersOfASweepAreItsEnds) {
     const auto sweep = parse_grid("1x45");
     ASSERT_TRUE(sweep);
-    EXPECT_EQ(parse_sources("corners", *sweep), (Positions{LatticePosition::whole(0, -22), LatticePosition::whole(0, 22)}));
+    EXPECT_EQ(parse_sources("corners", *sweep),
+              (Positions{LatticePosition::whole(0, -22), LatticePosition::whole(0, 22)}));
 }
 
 TEST(Sources, ListsNameViews) {
     const ViewGrid grid;
     EXPECT_EQ(parse_sources("2,2", grid), Positions{LatticePosition{}});
-    EXPECT_EQ(parse_sources("0,5;3,1", grid), (Positions{LatticePosition::whole(-2, 3), LatticePosition::whole(1, -1)}));
-    for (const char* wrong : {"", "left", "1", "1,", ",1", "1,1;", "1,1;;2,2", "6,0", "0,6", "1,1;1,1", "1,1 2,2", "-1,0",
-                              "99999999999,0", "0,0;0,1;0,2;0,3;0,4;0,5;1,0;1,1;1,2"}) {
+    EXPECT_EQ(parse_sources("0,5;3,1", grid),
+              (Positions{LatticePosition::whole(-2, 3), LatticePosition::whole(1, -1)}));
+    for (const char* wrong : {"", "left", "1", "1,", ",1", "1,1;", "1,1;;2,2", "6,0", "0,6", "1,1;1,1", "1,1 2,2",
+                              "-1,0", "99999999999,0", "0,0;0,1;0,2;0,3;0,4;0,5;1,0;1,1;1,2"}) {
         EXPECT_FALSE(parse_sources(wrong, grid)) << wrong;
     }
 }
@@ -43,7 +45,8 @@ TEST(Sources, CamerasAreThoseOfTheViews) {
     header.source = make_camera(glm::mat4(1.0F), 0.8F, 40, 30);
     header.source_positions = {{-4, 2}, {0, 0}};
     header.source_geometry = {{0.1F, 0.2F}, 3.0F};
-    const Camera view = view_camera(header.source, header.source_geometry, {-4, 2}, vertical_fov(header.source), 40, 30);
+    const Camera view =
+        view_camera(header.source, header.source_geometry, {-4, 2}, vertical_fov(header.source), 40, 30);
     const Camera source = widened_source(header, 0);
     EXPECT_EQ(source.world_from_camera, view.world_from_camera);
     EXPECT_NEAR(source.principal_px.x, view.principal_px.x, 1e-4F); // the field of view is rounded on its way

@@ -119,8 +119,8 @@ struct RandomRig {
     std::mt19937 random;
 };
 
-/// x_source = x_target + Δcol·d and y_source = y_target + Δrow·d (docs/lightfield.md), for the formula and the projections.
-/// Float world coordinates of 10 m give 1e-6 m, at f = 900 px and 0.5 m depth 2e-3 px.
+/// x_source = x_target + Δcol·d and y_source = y_target + Δrow·d (docs/lightfield.md), for the formula and the
+/// projections. Float world coordinates of 10 m give 1e-6 m, at f = 900 px and 0.5 m depth 2e-3 px.
 void expect_projection_identity(RandomRig& rig, float convergence_m) {
     const Camera source = make_camera(rig.pose(), rig.between(0.3F, 1.5F), 1280, 720);
     const LatticeGeometry geometry{{rig.between(0.0F, 0.1F), rig.between(0.0F, 0.1F)}, convergence_m};
