@@ -11,6 +11,7 @@ namespace fieldcast::gpu {
 
 /// One array image and a view of each of its layers.
 struct RasterTarget::Image {
+    explicit Image(VkDevice d) : device(d) {}
     Image(const Device& device, const RasterTargetDesc& desc, VkFormat format);
     ~Image();
     Image(Image&& other) noexcept
@@ -111,7 +112,7 @@ void require_size(const Device& device, const RasterTargetDesc& desc) {
 
 } // namespace
 
-RasterTarget::Image::Image(const Device& d, const RasterTargetDesc& desc, VkFormat format) : device(d.handle()) {
+RasterTarget::Image::Image(const Device& d, const RasterTargetDesc& desc, VkFormat format) : Image(d.handle()) {
     image = create_image(d, desc, format);
     memory = allocate_memory(d, image);
     check(vkBindImageMemory(device, image, memory, 0), "vkBindImageMemory");

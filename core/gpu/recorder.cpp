@@ -93,6 +93,9 @@ void Recorder::stage(const std::string& name) {
     FC_ASSERT(stages_.size() < kMaxStages, "too many stages in one submission");
     write_timestamp();
     stages_.push_back(name);
+    if (device_.info().is_cpu) {
+        barrier(); // Mesa's software driver, once it has drawn, takes the time when it next has to wait
+    }
 }
 
 void Recorder::dispatch_raw(const Kernel& kernel, std::span<const VkDescriptorSet> sets,

@@ -14,7 +14,7 @@ namespace fieldcast::render {
 namespace {
 
 constexpr std::uint32_t kViewsAtOnce = 8;  // bounds the memory of the target
-constexpr double kPixelsPerTriangle = 0.5; // with fewer, rays are faster; measured on cpu2
+constexpr double kPixelsPerTriangle = 0.5; // with fewer, rays are faster; measured on epyc2
 constexpr std::array kDrawOrder = {scene::AlphaMode::kOpaque, scene::AlphaMode::kMask, scene::AlphaMode::kBlend};
 constexpr float kNearOfRadius = 1e-4F; // the depth buffer holds floats of near / depth: its precision hardly depends
 
