@@ -2,7 +2,7 @@
 #include "core/gpu/raster_target.h"
 
 #include "core/base/error.h"
-#include "core/gpu/format.h"
+#include "core/gpu/image.h"
 
 #include <algorithm>
 #include <utility>
@@ -54,19 +54,6 @@ VkImage create_image(const Device& device, const RasterTargetDesc& desc, VkForma
     return image;
 }
 
-VkDeviceMemory allocate_memory(const Device& device, VkImage image) {
-    VkMemoryRequirements requirements{};
-    vkGetImageMemoryRequirements(device.handle(), image, &requirements);
-    const auto local = device.memory_type(requirements.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    VkMemoryAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    info.allocationSize = requirements.size;
-    info.memoryTypeIndex = local ? *local : device.memory_type(requirements.memoryTypeBits, 0).value();
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    check(vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory");
-    return memory;
-}
-
 VkImageView create_view(VkDevice device, VkImage image, VkFormat format, std::uint32_t layer) {
     VkImageViewCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
@@ -77,27 +64,6 @@ VkImageView create_view(VkDevice device, VkImage image, VkFormat format, std::ui
     VkImageView view = VK_NULL_HANDLE;
     check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
     return view;
-}
-
-/// What used the images before is over when what comes after begins.
-void transition(VkCommandBuffer commands, VkImage image, VkFormat format, VkImageLayout from, VkImageLayout to) {
-    VkImageMemoryBarrier2 barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = {aspect_of(format), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
-    VkDependencyInfo dependency{};
-    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    dependency.imageMemoryBarrierCount = 1;
-    dependency.pImageMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 void require_size(const Device& device, const RasterTargetDesc& desc) {
@@ -114,8 +80,7 @@ void require_size(const Device& device, const RasterTargetDesc& desc) {
 
 RasterTarget::Image::Image(const Device& d, const RasterTargetDesc& desc, VkFormat format) : Image(d.handle()) {
     image = create_image(d, desc, format);
-    memory = allocate_memory(d, image);
-    check(vkBindImageMemory(device, image, memory, 0), "vkBindImageMemory");
+    memory = allocate_and_bind(d, image);
     for (std::uint32_t layer = 0; layer < desc.layers; ++layer) {
         views.push_back(create_view(device, image, format, layer));
     }
@@ -145,18 +110,18 @@ RasterTarget& RasterTarget::operator=(RasterTarget&& other) noexcept = default;
 
 void RasterTarget::begin(Recorder& recorder) const {
     for (std::size_t i = 0; i < desc_.colours.size(); ++i) {
-        transition(recorder.commands(), images_->colours[i].image, desc_.colours[i], VK_IMAGE_LAYOUT_UNDEFINED,
-                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        transition(recorder.commands(), images_->colours[i].image,
+                   {.to = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL});
     }
-    transition(recorder.commands(), images_->depth[0].image, kDepthFormat, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    transition(recorder.commands(), images_->depth[0].image,
+               {.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, .aspect = VK_IMAGE_ASPECT_DEPTH_BIT});
 }
 
 void RasterTarget::copy_to(Recorder& recorder, std::size_t colour, const Buffer& buffer, std::uint64_t offset_bytes,
                            std::uint64_t layer_bytes, std::uint32_t layer_count) const {
     const VkImage image = images_->colours.at(colour).image;
-    transition(recorder.commands(), image, desc_.colours[colour], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    transition(recorder.commands(), image,
+               {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL});
     std::vector<VkBufferImageCopy> regions(layer_count);
     for (std::uint32_t layer = 0; layer < layer_count; ++layer) {
         regions[layer].bufferOffset = offset_bytes + layer * layer_bytes;

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/gpu/format.h"
+#include "core/gpu/image.h"
 #include "core/gpu/run_once.h"
 
 #include <algorithm>
@@ -52,19 +53,6 @@ VkImage create_image(const Device& device, const TextureDesc& desc) {
     return image;
 }
 
-VkDeviceMemory allocate_memory(const Device& device, VkImage image) {
-    VkMemoryRequirements requirements{};
-    vkGetImageMemoryRequirements(device.handle(), image, &requirements);
-    const auto local = device.memory_type(requirements.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    VkMemoryAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    info.allocationSize = requirements.size;
-    info.memoryTypeIndex = local ? *local : device.memory_type(requirements.memoryTypeBits, 0).value();
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    check(vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory");
-    return memory;
-}
-
 VkImageView create_view(VkDevice device, VkImage image, const TextureDesc& desc) {
     VkImageViewCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
@@ -90,35 +78,6 @@ VkSampler create_sampler(VkDevice device) {
     VkSampler sampler = VK_NULL_HANDLE;
     check(vkCreateSampler(device, &info, nullptr, &sampler), "vkCreateSampler");
     return sampler;
-}
-
-/// Mip levels and layers of an image, and what happens to them.
-struct Transition {
-    VkImageLayout from = VK_IMAGE_LAYOUT_UNDEFINED;
-    VkImageLayout to = VK_IMAGE_LAYOUT_UNDEFINED;
-    std::uint32_t first_mip = 0;
-    std::uint32_t mips = VK_REMAINING_MIP_LEVELS;
-};
-
-/// Full barriers: textures are made once, when a scene is loaded.
-void transition(VkCommandBuffer commands, VkImage image, const Transition& change) {
-    VkImageMemoryBarrier2 barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.oldLayout = change.from;
-    barrier.newLayout = change.to;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, change.first_mip, change.mips, 0, VK_REMAINING_ARRAY_LAYERS};
-    VkDependencyInfo dependency{};
-    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    dependency.imageMemoryBarrierCount = 1;
-    dependency.pImageMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &dependency);
 }
 
 VkOffset3D mip_corner(const TextureDesc& desc, std::uint32_t mip) {
@@ -177,8 +136,7 @@ Texture::Texture(const Device& device, const TextureDesc& desc, std::span<const 
     device_ = device.handle();
     desc_ = desc;
     image_ = create_image(device, desc);
-    memory_ = allocate_memory(device, image_);
-    check(vkBindImageMemory(device_, image_, memory_, 0), "vkBindImageMemory");
+    memory_ = allocate_and_bind(device, image_);
     view_ = create_view(device_, image_, desc);
     sampler_ = create_sampler(device_);
     upload(device, image_, desc, layer_bytes);
