@@ -35,8 +35,8 @@ std::vector<PlacedTriangle> place_triangles(const Scene& scene, const RigidGroup
         }
         for (std::uint32_t primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
             PlacedTriangle triangle{part, primitive, mesh.triangles[primitive], {}};
-            for (int corner = 0; corner < 3; ++corner) {
-                const glm::vec4 position(mesh.positions[triangle.corners[corner]], 1.0F);
+            for (std::uint32_t corner = 0; corner < 3; ++corner) {
+                const glm::vec4 position(mesh.positions[triangle.corners[static_cast<int>(corner)]], 1.0F);
                 triangle.positions[corner] = glm::vec3(group.parts[part].group_from_object * position);
             }
             placed.push_back(triangle);
@@ -112,8 +112,8 @@ private:
     /// drawn.
     void add(std::uint32_t instance, const PlacedTriangle& triangle) {
         std::array<Known*, 3> corners{};
-        for (int i = 0; i < 3; ++i) {
-            corners[i] = &find(triangle.part, triangle.corners[i], triangle.positions[i]);
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            corners[i] = &find(triangle.part, triangle.corners[static_cast<int>(i)], triangle.positions[i]);
         }
         std::size_t first = 0;
         while (first < 3 && corners[first]->is_first) {
