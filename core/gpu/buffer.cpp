@@ -150,6 +150,13 @@ void Buffer::release() noexcept {
     }
 }
 
+Buffer make_zero_buffer(const Device& device, std::uint64_t size_bytes) {
+    Buffer buffer(device, size_bytes);
+    run_once(device,
+             [&](VkCommandBuffer commands) { vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, 0); });
+    return buffer;
+}
+
 void write_buffer(const Device& device, const Buffer& buffer, std::span<const std::byte> bytes,
                   std::uint64_t offset_bytes) {
     FC_ASSERT(offset_bytes <= buffer.size_bytes() && bytes.size() <= buffer.size_bytes() - offset_bytes,

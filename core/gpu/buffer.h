@@ -53,6 +53,9 @@ void write_buffer(const Device& device, const Buffer& buffer, std::span<const st
 void read_buffer(const Device& device, const Buffer& buffer, std::span<std::byte> bytes,
                  std::uint64_t offset_bytes = 0);
 
+/// A device buffer of zeros. Blocks.
+Buffer make_zero_buffer(const Device& device, std::uint64_t size_bytes);
+
 /// A device buffer holding a copy of `values` (at least 16 bytes even if empty).
 template <class T>
 requires std::is_trivially_copyable_v<T> Buffer make_buffer(const Device& device, std::span<const T> values) {

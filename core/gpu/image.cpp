@@ -1,7 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/gpu/image.h"
 
+#include "core/base/error.h"
+
+#include <algorithm>
+
 namespace fieldcast::gpu {
+
+namespace {
+
+void require_size(const Device& device, const ImageDesc& desc) {
+    const DeviceInfo& info = device.info();
+    if (std::max(desc.width_px, desc.height_px) > info.max_image_side || desc.layers > info.max_image_layers) {
+        throw VulkanError("vkCreateImage: " + std::to_string(desc.width_px) + "x" + std::to_string(desc.height_px) +
+                          " with " + std::to_string(desc.layers) + " layers is more than " + info.name + " allows (" +
+                          std::to_string(info.max_image_side) + ", " + std::to_string(info.max_image_layers) + ")");
+    }
+}
+
+} // namespace
+
+VkImage create_image(const Device& device, const ImageDesc& desc) {
+    require_size(device, desc);
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = desc.format;
+    info.extent = {desc.width_px, desc.height_px, 1};
+    info.mipLevels = desc.mips;
+    info.arrayLayers = desc.layers;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = desc.usage;
+    VkImage image = VK_NULL_HANDLE;
+    check(vkCreateImage(device.handle(), &info, nullptr, &image), "vkCreateImage");
+    return image;
+}
 
 VkDeviceMemory allocate_and_bind(const Device& device, VkImage image) {
     VkMemoryRequirements requirements{};

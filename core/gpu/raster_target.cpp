@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/gpu/raster_target.h"
 
-#include "core/base/error.h"
 #include "core/gpu/image.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace fieldcast::gpu {
@@ -37,21 +35,14 @@ VkImageAspectFlags aspect_of(VkFormat format) {
 }
 
 VkImage create_image(const Device& device, const RasterTargetDesc& desc, VkFormat format) {
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {desc.width_px, desc.height_px, 1};
-    info.mipLevels = 1;
-    info.arrayLayers = desc.layers;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = format == RasterTarget::kDepthFormat
-                     ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
-                     : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    VkImage image = VK_NULL_HANDLE;
-    check(vkCreateImage(device.handle(), &info, nullptr, &image), "vkCreateImage");
-    return image;
+    const VkImageUsageFlags usage = format == RasterTarget::kDepthFormat
+                                        ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                        : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    return create_image(device, ImageDesc{.format = format,
+                                          .width_px = desc.width_px,
+                                          .height_px = desc.height_px,
+                                          .layers = desc.layers,
+                                          .usage = usage});
 }
 
 VkImageView create_view(VkDevice device, VkImage image, VkFormat format, std::uint32_t layer) {
@@ -64,16 +55,6 @@ VkImageView create_view(VkDevice device, VkImage image, VkFormat format, std::ui
     VkImageView view = VK_NULL_HANDLE;
     check(vkCreateImageView(device, &info, nullptr, &view), "vkCreateImageView");
     return view;
-}
-
-void require_size(const Device& device, const RasterTargetDesc& desc) {
-    const DeviceInfo& info = device.info();
-    if (std::max(desc.width_px, desc.height_px) > info.max_image_side || desc.layers > info.max_image_layers) {
-        throw VulkanError("vkCreateImage: drawing into " + std::to_string(desc.width_px) + "x" +
-                          std::to_string(desc.height_px) + " with " + std::to_string(desc.layers) +
-                          " layers is more than " + info.name + " allows (" + std::to_string(info.max_image_side) +
-                          ", " + std::to_string(info.max_image_layers) + ")");
-    }
 }
 
 } // namespace
@@ -96,7 +77,6 @@ RasterTarget::Image::~Image() {
 
 RasterTarget::RasterTarget(const Device& device, const RasterTargetDesc& desc)
     : images_(std::make_unique<Images>()), desc_(desc) {
-    require_size(device, desc);
     for (const VkFormat format : desc.colours) {
         images_->colours.emplace_back(device, desc, format);
     }
@@ -110,8 +90,7 @@ RasterTarget& RasterTarget::operator=(RasterTarget&& other) noexcept = default;
 
 void RasterTarget::begin(Recorder& recorder) const {
     for (std::size_t i = 0; i < desc_.colours.size(); ++i) {
-        transition(recorder.commands(), images_->colours[i].image,
-                   {.to = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL});
+        transition(recorder.commands(), images_->colours[i].image, {.to = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL});
     }
     transition(recorder.commands(), images_->depth[0].image,
                {.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, .aspect = VK_IMAGE_ASPECT_DEPTH_BIT});

@@ -29,28 +29,16 @@ void require_format(const Device& device, const TextureDesc& desc) {
         throw VulkanError("vkCreateImage: " + device.info().name + " cannot filter images of VkFormat " +
                           std::to_string(desc.format));
     }
-    const auto& info = device.info();
-    if (std::max(desc.width_px, desc.height_px) > info.max_image_side || desc.layers > info.max_image_layers) {
-        throw VulkanError("vkCreateImage: " + std::to_string(desc.width_px) + "x" + std::to_string(desc.height_px) +
-                          " with " + std::to_string(desc.layers) + " layers is more than " + info.name + " allows (" +
-                          std::to_string(info.max_image_side) + ", " + std::to_string(info.max_image_layers) + ")");
-    }
 }
 
 VkImage create_image(const Device& device, const TextureDesc& desc) {
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = desc.format;
-    info.extent = {desc.width_px, desc.height_px, 1};
-    info.mipLevels = mip_count(desc);
-    info.arrayLayers = desc.layers;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    VkImage image = VK_NULL_HANDLE;
-    check(vkCreateImage(device.handle(), &info, nullptr, &image), "vkCreateImage");
-    return image;
+    return create_image(device, ImageDesc{.format = desc.format,
+                                          .width_px = desc.width_px,
+                                          .height_px = desc.height_px,
+                                          .layers = desc.layers,
+                                          .mips = mip_count(desc),
+                                          .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
 }
 
 VkImageView create_view(VkDevice device, VkImage image, const TextureDesc& desc) {

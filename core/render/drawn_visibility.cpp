@@ -3,6 +3,7 @@
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
+#include "core/render/view_request.h"
 #include "shaders/shared/frame.h"
 #include "shaders/shared/scene.h"
 
@@ -18,8 +19,10 @@ constexpr double kPixelsPerTriangle = 0.5; // with fewer, rays are faster; measu
 constexpr std::array kDrawOrder = {scene::AlphaMode::kOpaque, scene::AlphaMode::kMask, scene::AlphaMode::kBlend};
 constexpr float kNearOfRadius = 1e-4F; // the depth buffer holds floats of near / depth: its precision hardly depends
 
-std::uint64_t padded_pixels(const Camera& camera) { // view_stride() of lib/views.glsl
-    return (std::uint64_t{camera.width_px} * camera.height_px + 3) & ~std::uint64_t{3};
+/// All of a batch have the size of its first.
+std::uint64_t batch_stride(const VisibilityBatch& batch) {
+    const Camera& camera = batch.cameras.front();
+    return view_stride(camera.width_px, camera.height_px);
 }
 
 /// Vulkan's clip space of a pinhole, looking along −Z: x right, y down, z / w = near / depth.
@@ -121,7 +124,7 @@ void DrawnVisibility::resize(const VisibilityBatch& batch) {
         target_ = {}; // frees memory first
         target_ = gpu::RasterTarget(device_, {camera.width_px, camera.height_px, layers, formats_});
     }
-    const std::uint64_t pixels = padded_pixels(camera) * count;
+    const std::uint64_t pixels = batch_stride(batch) * count;
     if (numbers_.size_bytes() < pixels * 4) {
         numbers_ = gpu::Buffer(device_, pixels * 4);
         marks_ = find_layers_ ? gpu::Buffer(device_, pixels) : gpu::Buffer();
@@ -152,7 +155,7 @@ glm::mat4 DrawnVisibility::clip_from_group(const glm::mat4& clip_from_world, con
 
 void DrawnVisibility::record(gpu::Recorder& recorder, const VisibilityBatch& batch) {
     resize(batch);
-    const std::uint64_t pixels = padded_pixels(batch.cameras.front());
+    const std::uint64_t pixels = batch_stride(batch);
     for (std::size_t first = 0; first < batch.cameras.size(); first += kViewsAtOnce) {
         const auto count =
             static_cast<std::uint32_t>(std::min<std::size_t>(kViewsAtOnce, batch.cameras.size() - first));
@@ -181,12 +184,16 @@ void DrawnVisibility::draw_view(gpu::Recorder& recorder, const VisibilityBatch& 
     for (const auto& [mode, pipeline] : pipelines_) {
         pass.use(*pipeline, {&scene_.bindings()});
         for (const scene::DrawGroup& group : geometry_.groups()) {
+            const auto& clusters = clusters_of(group, mode);
+            if (clusters.empty()) {
+                continue;
+            }
             shared::DrawParams params{};
             params.clip_from_group = clip_from_group(clip, group);
             params.camera = batch.camera_records + view * sizeof(shared::CameraRecord);
             params.triangles = geometry_.triangles().address();
             pass.push(params);
-            draw_clusters(pass, clusters_of(group, mode), params.clip_from_group);
+            draw_clusters(pass, clusters, params.clip_from_group);
         }
     }
 }
@@ -196,7 +203,7 @@ void DrawnVisibility::name_triangles(gpu::Recorder& recorder, const VisibilityBa
     params.numbers = numbers_.address();
     params.triangles = geometry_.triangles().address();
     params.visibility = batch.visibility->address();
-    params.pixel_count = static_cast<std::uint32_t>(padded_pixels(batch.cameras.front()) * batch.cameras.size());
+    params.pixel_count = static_cast<std::uint32_t>(batch_stride(batch) * batch.cameras.size());
     params.triangle_count = geometry_.triangle_count();
     recorder.dispatch(name_triangles_, {}, params, linear_groups(params.pixel_count));
 }

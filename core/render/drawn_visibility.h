@@ -9,7 +9,7 @@
 namespace fieldcast::render {
 
 /// Visibility of views by a rasteriser: every triangle of a solid surface that may be in a view is drawn, the nearest
-/// stays. Agrees with rays but for pixels whose centre is within 1/256 pixel of an edge, and surfaces closer to each
+/// stays. Agrees with rays but for pixels whose centre is within 1/512 pixel of an edge, and surfaces closer to each
 /// other than the depth buffer resolves. What is nearer to a camera than 1/10 000 of the scene's radius is not seen.
 class DrawnVisibility {
 public:

@@ -17,10 +17,6 @@ namespace fieldcast::render {
 
 namespace {
 
-std::uint32_t padded_pixels(const ViewRequest& request) { // view_stride() of lib/views.glsl
-    return (request.width_px * request.height_px + 3U) & ~3U;
-}
-
 Camera request_camera(const Camera& source, const ViewRequest& request, LatticePosition position) {
     const GuardBand& band = request.guard_band;
     const Camera inner = view_camera(source, request.geometry, position, request.fovy_rad,
@@ -141,7 +137,7 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
     cameras = gpu::Buffer(device, (shared::kMaxSources + view_count()) * sizeof(shared::CameraRecord));
     views = gpu::Buffer(device, view_count() * sizeof(shared::ViewRecord));
     counters = gpu::Buffer(device, (shared::kCounterDiscards + 4ULL * view_count()) * 4);
-    const std::uint64_t pixels = static_cast<std::uint64_t>(padded_pixels(request)) * view_count();
+    const std::uint64_t pixels = std::uint64_t{view_stride(request)} * view_count();
     if (pixels <= view_pixels) {
         return;
     }
@@ -271,7 +267,7 @@ void GridRenderer::State::record_tone_map(const FrameHeader& header) {
     shared::ToneMapParams params{};
     params.radiance = radiance.address();
     params.rgb8 = rgb8.address();
-    params.pixel_count = padded_pixels(request) * view_count();
+    params.pixel_count = view_stride(request) * view_count();
     params.flags = kernel_flags(header.settings);
     params.exposure = header.settings.exposure;
     recorder.stage("tone_map");
@@ -291,7 +287,7 @@ Views GridRenderer::State::download(const FrameHeader& header, const std::vector
     for (std::size_t i = 0; i < wanted; ++i) {
         Plane image{PlaneSemantic::kColour, PlaneFormat::kRgb8, request.width_px, request.height_px, {}};
         image.bytes.resize(plane_bytes(image.format, image.width_px, image.height_px));
-        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * padded_pixels(request) * i);
+        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * view_stride(request) * i);
         result.views.push_back({request.positions[i], std::move(image), discards(counts, i)});
     }
     return result;
@@ -301,7 +297,7 @@ Views GridRenderer::State::download(const FrameHeader& header, const std::vector
 std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t view) const {
     FC_ASSERT(view < wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(request.width_px) * request.height_px;
-    return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * padded_pixels(request) * view);
+    return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * view_stride(request) * view);
 }
 
 GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
@@ -352,7 +348,7 @@ LinearView GridRenderer::linear_view(std::size_t index) const {
     FC_ASSERT(index < s.wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
     const auto texels = gpu::read_buffer_as<glm::uvec2>(s.device, s.radiance, count,
-                                                        8ULL * padded_pixels(s.request) * index);
+                                                        8ULL * view_stride(s.request) * index);
     LinearView view{s.request.width_px, s.request.height_px, {}};
     view.pixels.reserve(count);
     for (const glm::uvec2 texel : texels) {

@@ -3,14 +3,11 @@
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
+#include "core/render/view_request.h"
 
 namespace fieldcast::render {
 
 namespace {
-
-std::uint32_t padded_pixels(const HoleFiller::Batch& batch) { // view_stride() of lib/views.glsl
-    return (batch.width * batch.height + 3U) & ~3U;
-}
 
 /// Makes `buffer` hold at least `bytes`, with room to grow. Contents are lost where it grows.
 void grow(const gpu::Device& device, gpu::Buffer& buffer, std::uint64_t bytes) {
@@ -48,7 +45,7 @@ void HoleFiller::begin(gpu::Recorder& recorder, const Batch& batch, const gpu::B
     grow(device_, frame.cameras, cameras.size_bytes());
     grow(device_, frame.words, 4ULL * word_count_);
     grow(device_, frame.first, 4ULL * word_count_);
-    grow(device_, frame.pixels, 4ULL * padded_pixels(batch) * batch.view_count);
+    grow(device_, frame.pixels, 4ULL * view_stride(batch.width, batch.height) * batch.view_count);
     grow(device_, blocks_, 4ULL * gpu::groups_for(word_count_, shared::kHoleBlock));
     recorder.copy(cameras, frame.cameras, cameras.size_bytes());
     recorder.fill(frame.words, 0);

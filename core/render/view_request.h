@@ -20,4 +20,13 @@ struct ViewRequest {
     bool operator==(const ViewRequest&) const = default;
 };
 
+/// Pixels from one view of a batch to the next, in all planes: view_stride() of shaders/lib/views.glsl.
+constexpr std::uint32_t view_stride(std::uint32_t width_px, std::uint32_t height_px) {
+    return (width_px * height_px + 3U) & ~3U;
+}
+
+constexpr std::uint32_t view_stride(const ViewRequest& request) {
+    return view_stride(request.width_px, request.height_px);
+}
+
 } // namespace fieldcast::render

@@ -13,7 +13,6 @@ struct WarpRenderer::State {
           search(make_plain_kernel(d, KernelId::kWarpViews, sizeof(shared::WarpViewsParams), {&images.layout()})),
           fill(make_plain_kernel(d, KernelId::kWarpFill, sizeof(shared::WarpViewsParams), {&images.layout()})) {}
 
-    std::uint32_t padded_pixels() const { return (request.width_px * request.height_px + 3U) & ~3U; } // view_stride()
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
     void resize();
     void upload_paths();
@@ -38,7 +37,7 @@ struct WarpRenderer::State {
 void WarpRenderer::State::resize() {
     paths = gpu::Buffer(device, std::uint64_t{view_count()} * images.image_count() * sizeof(shared::WarpPath));
     counters = gpu::Buffer(device, std::uint64_t{view_count()} * shared::kWarpCounters * 4);
-    const std::uint64_t wanted = std::uint64_t{padded_pixels()} * view_count();
+    const std::uint64_t wanted = std::uint64_t{view_stride(request)} * view_count();
     if (wanted > reserved_pixels) {
         reserved_pixels = wanted;
         pixels = gpu::Buffer(device, wanted * 4);
@@ -78,7 +77,7 @@ void WarpRenderer::State::record() {
                       {gpu::groups_for(params.width, 8), gpu::groups_for(params.height, 8), params.view_count});
     recorder.barrier();
     recorder.stage("warp_fill");
-    recorder.dispatch(fill, {&images.bindings()}, params, linear_groups(padded_pixels() / 4 * view_count()));
+    recorder.dispatch(fill, {&images.bindings()}, params, linear_groups(view_stride(request) / 4 * view_count()));
     recorder.barrier();
 }
 
@@ -94,7 +93,7 @@ Views WarpRenderer::State::download(const FrameHeader& header) {
                           .hidden = of_view[shared::kWarpCountHidden]});
         Plane image{PlaneSemantic::kColour, PlaneFormat::kRgb8, request.width_px, request.height_px, {}};
         image.bytes.resize(plane_bytes(image.format, image.width_px, image.height_px));
-        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * padded_pixels() * i);
+        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * view_stride(request) * i);
         const DiscardCounts discards{.out_of_frustum = counts.back().outside, .plane = counts.back().hidden};
         result.views.push_back({request.positions[i], std::move(image), discards});
     }
@@ -131,7 +130,8 @@ std::vector<bool> WarpRenderer::hole_mask(std::size_t index) const {
     const State& s = *state_;
     FC_ASSERT(index < s.request.positions.size(), "no such view");
     const std::size_t count = std::size_t{s.request.width_px} * s.request.height_px;
-    const auto words = gpu::read_buffer_as<std::uint32_t>(s.device, s.pixels, count, 4ULL * s.padded_pixels() * index);
+    const auto words =
+        gpu::read_buffer_as<std::uint32_t>(s.device, s.pixels, count, 4ULL * view_stride(s.request) * index);
     std::vector<bool> mask(count);
     for (std::size_t i = 0; i < count; ++i) {
         mask[i] = (words[i] & shared::kWarpHole) != 0;

@@ -67,6 +67,25 @@ protected:
         return read_buffer_as<std::uint8_t>(device(), copy, 16);
     }
 
+    struct Draw {
+        const RasterPipeline& pipeline;
+        std::vector<std::uint32_t> triangles; ///< in this order
+        Push push{};
+    };
+
+    /// Everything that a layer shows.
+    void draw(Recorder& recorder, const std::vector<Draw>& draws, std::uint32_t layer = 0) {
+        RasterPass pass(recorder, target_, layer);
+        pass.use_triangles(vertices_, indices_);
+        for (const Draw& one : draws) {
+            pass.use(one.pipeline, {});
+            pass.push(one.push);
+            for (const std::uint32_t triangle : one.triangles) {
+                pass.draw(3 * triangle, 3);
+            }
+        }
+    }
+
     Buffer vertices_;
     Buffer indices_;
     RasterTarget target_;
@@ -76,15 +95,8 @@ TEST_F(RasterTest, WhatIsNearerStaysFromBothSidesAndInAnyOrder) {
     const RasterPipeline pipeline(device(), kCode, description());
     Recorder recorder(device());
     target_.begin(recorder);
-    for (std::uint32_t layer = 0; layer < 2; ++layer) {
-        RasterPass pass(recorder, target_, layer);
-        pass.use_triangles(vertices_, indices_);
-        pass.use(pipeline, {});
-        pass.push(Push{});
-        for (const std::uint32_t triangle : {layer == 0 ? 0U : 2U, 1U, layer == 0 ? 2U : 0U}) {
-            pass.draw(3 * triangle, 3);
-        }
-    }
+    draw(recorder, {{pipeline, {0, 1, 2}}});
+    draw(recorder, {{pipeline, {2, 1, 0}}}, 1);
     const auto seen = numbers(recorder);
     // Pixel centres lie at x = −0.875 … 0.875 and y = ±0.5, the slanting side of the left triangles at x = −(y + 1) /
     // 8: −0.06 in the first row, right of the fourth centre (−0.125), and −0.19 in the second.
@@ -96,13 +108,7 @@ TEST_F(RasterTest, WhatIsNotDrawnKeepsAllOnes) {
     const RasterPipeline pipeline(device(), kCode, description());
     Recorder recorder(device());
     target_.begin(recorder);
-    {
-        RasterPass pass(recorder, target_, 0);
-        pass.use_triangles(vertices_, indices_);
-        pass.use(pipeline, {});
-        pass.push(Push{.moved = {1, 0}, .added = 0});
-        pass.draw(0, 3);
-    }
+    draw(recorder, {{pipeline, {0}, {.moved = {1, 0}, .added = 0}}});
     const std::vector<std::uint32_t> seen = numbers(recorder)[0];
     EXPECT_EQ(std::vector(seen.begin(), seen.begin() + 8),
               (std::vector<std::uint32_t>{kNone, kNone, kNone, kNone, 10, 10, 10, 10}));
@@ -113,13 +119,7 @@ TEST_F(RasterTest, PushConstantsAndSpecialisationsReachBothShaders) {
     const RasterPipeline pipeline(device(), kCode, description(), factor);
     Recorder recorder(device());
     target_.begin(recorder);
-    {
-        RasterPass pass(recorder, target_, 0);
-        pass.use_triangles(vertices_, indices_);
-        pass.use(pipeline, {});
-        pass.push(Push{.moved = {0, 0}, .added = 2});
-        pass.draw(3, 3);
-    }
+    draw(recorder, {{pipeline, {1}, {.moved = {0, 0}, .added = 2}}});
     EXPECT_THAT(numbers(recorder)[0], testing::Each(102U));
 }
 
@@ -131,33 +131,16 @@ TEST_F(RasterTest, APipelineWritesOnlyItsImagesAndMayLeaveDepthAlone) {
     RasterPipelineDesc numbering = description();
     numbering.written = 1;
     const RasterPipeline number(device(), kCode, numbering);
+    const std::vector<Draw> draws = {{mark, {2}}, {number, {1}}}; // the nearest first, but it leaves no depth
     Recorder recorder(device());
     target_.begin(recorder);
-    {
-        RasterPass pass(recorder, target_, 0);
-        pass.use_triangles(vertices_, indices_);
-        pass.use(mark, {});
-        pass.push(Push{});
-        pass.draw(6, 3); // the nearest, but it leaves no depth
-        pass.use(number, {});
-        pass.push(Push{});
-        pass.draw(3, 3);
-    }
+    draw(recorder, draws);
     const std::vector<std::uint8_t> seen = marks(recorder);
     EXPECT_EQ(seen[0], 3U);
     EXPECT_EQ(seen[7], 255U);
     Recorder again(device());
     target_.begin(again);
-    {
-        RasterPass pass(again, target_, 0);
-        pass.use_triangles(vertices_, indices_);
-        pass.use(mark, {});
-        pass.push(Push{});
-        pass.draw(6, 3);
-        pass.use(number, {});
-        pass.push(Push{});
-        pass.draw(3, 3);
-    }
+    draw(again, draws);
     EXPECT_THAT(numbers(again)[0], testing::Each(20U));
 }
 
