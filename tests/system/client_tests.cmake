@@ -3,10 +3,14 @@
 find_package(CLI11 REQUIRED)
 add_library(client_fake_server STATIC ${CMAKE_CURRENT_LIST_DIR}/client_fake_server.cpp)
 target_include_directories(client_fake_server PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
-target_link_libraries(client_fake_server PUBLIC fieldcast_wire fieldcast_proto_grpc PRIVATE fieldcast_warnings)
+target_link_libraries(client_fake_server PUBLIC fieldcast_wire fieldcast_proto_grpc PRIVATE fieldcast_warnings
+                      INTERFACE grpc_end)
 
 fieldcast_test(client_session_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_session_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_agreement_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_backoff_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/client_clock_sync_test.cpp
     DEPENDS client_fake_server fieldcast_client_net)
 fieldcast_test(client_play_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_play_test.cpp

@@ -3,6 +3,9 @@
 add_library(server_synthetic STATIC ${CMAKE_CURRENT_LIST_DIR}/server_synthetic.cpp)
 target_include_directories(server_synthetic PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
 target_link_libraries(server_synthetic PUBLIC fieldcast_server_feed PRIVATE fieldcast_warnings)
+add_library(server_client STATIC ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
+target_include_directories(server_client PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
+target_link_libraries(server_client PUBLIC fieldcast_proto_grpc PRIVATE fieldcast_warnings INTERFACE grpc_end)
 
 fieldcast_test(server_session_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_adaptation_test.cpp
@@ -56,26 +59,22 @@ fieldcast_test(server_channel_test LABELS quick
 if(NOT FIELDCAST_SANITIZE MATCHES thread)
     fieldcast_test(server_service_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_catalog_test.cpp
-                ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_observation_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_service_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_steering_service_test.cpp
-        DEPENDS server_synthetic fieldcast_server_service)
+        DEPENDS server_client server_synthetic fieldcast_server_service)
     fieldcast_test(server_replay_test LABELS quick
-        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
-                ${CMAKE_CURRENT_LIST_DIR}/server_replay_test.cpp
-        DEPENDS server_synthetic fieldcast_server_recording fieldcast_server_service)
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_replay_test.cpp
+        DEPENDS server_client server_synthetic fieldcast_server_recording fieldcast_server_service)
     fieldcast_test(server_limits_test LABELS quick
         SOURCES ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp
-                ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_hostile_test.cpp
                 ${CMAKE_CURRENT_LIST_DIR}/server_limits_test.cpp
-        DEPENDS http_client server_synthetic fieldcast_server_service)
+        DEPENDS http_client server_client server_synthetic fieldcast_server_service)
     fieldcast_test(server_security_test LABELS quick
-        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
-                ${CMAKE_CURRENT_LIST_DIR}/server_security_test.cpp
-        DEPENDS certificate_authority server_synthetic fieldcast_server_service)
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_security_test.cpp
+        DEPENDS certificate_authority server_client server_synthetic fieldcast_server_service)
 endif()
 
 # Not a test: what bench/network/networks.py --synthetic measures.
@@ -84,10 +83,8 @@ target_link_libraries(synthetic_server PRIVATE server_synthetic fieldcast_server
 
 # Renders; the tests that need a device skip without one.
 fieldcast_test(server_process_test LABELS gpu system TIMEOUT 300
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp
-            ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
-    DEPENDS fieldcast_proto_grpc fieldcast_wire)
-target_include_directories(server_process_test PRIVATE ${PROJECT_SOURCE_DIR}/tests/system)
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
+    DEPENDS server_client fieldcast_wire)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
 
@@ -95,8 +92,8 @@ add_dependencies(server_process_test fieldcast-server)
 add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
 target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
 target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
-add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
-target_link_libraries(running_server PUBLIC test_program http_client fieldcast_proto_grpc PRIVATE GTest::gtest fieldcast_warnings)
+add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp)
+target_link_libraries(running_server PUBLIC test_program http_client server_client PRIVATE GTest::gtest fieldcast_warnings)
 find_package(nlohmann_json REQUIRED)
 fieldcast_test(operation_process_test LABELS gpu system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/operation_process_test.cpp
@@ -115,8 +112,8 @@ target_compile_definitions(change_process_test PRIVATE
 # Through the proxy of deploy/; skips where it cannot be installed. See tests/deploy.
 if(NOT FIELDCAST_SANITIZE MATCHES thread)
     add_executable(envoy_test ${CMAKE_CURRENT_LIST_DIR}/envoy_test.cpp ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
-                   ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp ${CMAKE_CURRENT_LIST_DIR}/server_client.cpp)
-    target_link_libraries(envoy_test PRIVATE certificate_authority http_client test_program server_synthetic
+                   ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp)
+    target_link_libraries(envoy_test PRIVATE certificate_authority http_client server_client test_program server_synthetic
                           fieldcast_server_service fieldcast_warnings GTest::gmock GTest::gtest_main)
     add_dependencies(envoy_test fieldcast-client)
     add_dependencies(tests_system envoy_test)

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "client/net/session.h"
+#include "client_fake_server.h"
+
+#include <gtest/gtest.h>
+
+namespace fieldcast::test {
+
+inline client::net::Wish small_wish() {
+    client::net::Wish wish;
+    wish.rows = 1;
+    wish.cols = 2;
+    return wish;
+}
+
+/// A session with a fake server; every wait has a deadline.
+class SessionTest : public testing::Test {
+protected:
+    void open(FakeServer::Script script, const client::net::Wish& wish = small_wish()) {
+        server_.emplace(std::move(script));
+        connection_.emplace(server_->address());
+        session_.emplace(*connection_, wish, pool_);
+    }
+
+    /// The next event of that kind; others are skipped.
+    template <class Kind> std::optional<Kind> next() {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+        while (auto event = session_->next(deadline)) {
+            if (auto* wanted = std::get_if<Kind>(&*event)) {
+                return std::move(*wanted);
+            }
+        }
+        return std::nullopt;
+    }
+
+    WorkerPool pool_{1};
+    std::optional<FakeServer> server_;
+    std::optional<client::net::Connection> connection_;
+    std::optional<client::net::Session> session_;
+};
+
+} // namespace fieldcast::test
