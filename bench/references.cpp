@@ -58,8 +58,9 @@ RenderSettings unbiased() {
 
 } // namespace
 
-References::References(const gpu::Device& device, LightFieldScene& scene, std::filesystem::path folder)
-    : scene_(scene), folder_(std::move(folder)), renderer_(device, scene.gpu_scene()) {}
+References::References(const gpu::Device& device, LightFieldScene& scene, std::filesystem::path folder,
+                       image::ExrPrecision precision)
+    : scene_(scene), folder_(std::move(folder)), precision_(precision), renderer_(device, scene.gpu_scene()) {}
 
 std::filesystem::path References::file_of(const Part& part) const {
     const std::string name = "frame" + std::to_string(part.frame) + "_row" + std::to_string(part.position.row_halves) +
@@ -101,7 +102,7 @@ void References::save(const Part& part, const Camera& camera) const {
     std::filesystem::path sidecar = file;
     sidecar.replace_extension(".json");
     std::filesystem::remove(sidecar);
-    image::write_exr(file, {camera.width_px, camera.height_px, renderer_.image()});
+    image::write_exr(file, {camera.width_px, camera.height_px, renderer_.image()}, precision_);
     write_json(sidecar.string(), {{"of", description(part)}, {"samples_per_pixel", renderer_.samples_per_pixel()}});
 }
 

@@ -15,7 +15,8 @@ namespace fieldcast::bench {
 class References {
 public:
     /// `folder` gets a subfolder per scene.
-    References(const gpu::Device& device, LightFieldScene& scene, std::filesystem::path folder);
+    References(const gpu::Device& device, LightFieldScene& scene, std::filesystem::path folder,
+               image::ExrPrecision precision = image::ExrPrecision::kFloat);
 
     /// `done`: samples added to this view so far; false: stop (the image is saved).
     using Progress = std::function<bool(std::uint32_t done)>;
@@ -45,6 +46,7 @@ private:
 
     LightFieldScene& scene_;
     std::filesystem::path folder_;
+    image::ExrPrecision precision_;
     render::ReferenceRenderer renderer_;
 };
 

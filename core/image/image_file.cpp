@@ -73,14 +73,16 @@ std::unique_ptr<OIIO::ImageInput> open_in_memory(const ImageHeader& header, OIIO
 }
 
 /// Encodes `pixels` (tightly packed, of the type and channels of `spec`) in memory.
-std::vector<std::byte> encode(const char* format, const OIIO::ImageSpec& spec, const void* pixels) {
+/// `pixels` are of `type`, which may be another than that of the file.
+std::vector<std::byte> encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                              const void* pixels) {
     std::vector<unsigned char> encoded;
     OIIO::Filesystem::IOVecOutput target(encoded);
     const auto output = OIIO::ImageOutput::create(format);
     FC_ASSERT(output && output->supports("ioproxy"), "OpenImageIO encodes this format in memory");
     output->threads(1);
     output->set_ioproxy(&target);
-    if (!output->open(std::string("memory.") + format, spec) || !output->write_image(spec.format, pixels) ||
+    if (!output->open(std::string("memory.") + format, spec) || !output->write_image(type, pixels) ||
         !output->close()) {
         throw std::runtime_error(std::string("cannot encode ") + format + ": " + output->geterror());
     }
@@ -205,12 +207,12 @@ RgbF32 read_rgb_f32(const std::filesystem::path& file, const ImageLimits& limits
 std::vector<std::byte> encode_png(const Plane& rgb) {
     FC_ASSERT(rgb.format == PlaneFormat::kRgb8, "only kRgb8 planes are PNG images");
     FC_ASSERT(rgb.bytes.size() == plane_bytes(rgb.format, rgb.width_px, rgb.height_px), "plane has all its pixels");
-    return encode("png", png_spec(rgb.width_px, rgb.height_px, 3), rgb.bytes.data());
+    return encode("png", png_spec(rgb.width_px, rgb.height_px, 3), OIIO::TypeDesc::UINT8, rgb.bytes.data());
 }
 
 std::vector<std::byte> encode_png(const Rgba8& rgba) {
     FC_ASSERT(rgba.pixels.size() == 4ULL * rgba.width_px * rgba.height_px, "image has all its pixels");
-    return encode("png", png_spec(rgba.width_px, rgba.height_px, 4), rgba.pixels.data());
+    return encode("png", png_spec(rgba.width_px, rgba.height_px, 4), OIIO::TypeDesc::UINT8, rgba.pixels.data());
 }
 
 void write_png(const std::filesystem::path& file, const Plane& rgb) {
@@ -221,11 +223,12 @@ void write_png(const std::filesystem::path& file, const Rgba8& rgba) {
     write_file_atomically(file, encode_png(rgba));
 }
 
-void write_exr(const std::filesystem::path& file, const RgbF32& rgb) {
+void write_exr(const std::filesystem::path& file, const RgbF32& rgb, ExrPrecision precision) {
     FC_ASSERT(rgb.pixels.size() == std::size_t{rgb.width_px} * rgb.height_px, "image has all its pixels");
-    OIIO::ImageSpec spec(static_cast<int>(rgb.width_px), static_cast<int>(rgb.height_px), 3, OIIO::TypeDesc::FLOAT);
+    const auto stored = precision == ExrPrecision::kHalf ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+    OIIO::ImageSpec spec(static_cast<int>(rgb.width_px), static_cast<int>(rgb.height_px), 3, stored);
     spec.attribute("compression", "zip");
-    write_file_atomically(file, encode("openexr", spec, rgb.pixels.data()));
+    write_file_atomically(file, encode("openexr", spec, OIIO::TypeDesc::FLOAT, rgb.pixels.data()));
 }
 
 } // namespace fieldcast::image

@@ -51,7 +51,10 @@ std::vector<std::byte> encode_png(const Rgba8& rgba);
 void write_png(const std::filesystem::path& file, const Plane& rgb);
 void write_png(const std::filesystem::path& file, const Rgba8& rgba);
 
-/// Writes linear RGB as a FLOAT EXR, which read_rgb_f32 gives back exactly. Throws std::system_error.
-void write_exr(const std::filesystem::path& file, const RgbF32& rgb);
+/// Of the numbers in a file: kHalf has 11 significant bits and ends at 65504, what is greater becomes infinite.
+enum class ExrPrecision : std::uint8_t { kFloat, kHalf };
+
+/// Writes linear RGB as an EXR. Of kFloat, read_rgb_f32 gives back exactly what was written. Throws std::system_error.
+void write_exr(const std::filesystem::path& file, const RgbF32& rgb, ExrPrecision precision = ExrPrecision::kFloat);
 
 } // namespace fieldcast::image

@@ -220,6 +220,15 @@ class Program(unittest.TestCase):
         self.assertEqual(before, sidecars[0].stat().st_mtime_ns)  # had enough samples
         self.assertEqual([], [path for path in folder.rglob("*") if path.name.endswith(".part")])
 
+    def test_references_may_be_half_as_large(self):
+        sizes = []
+        for name, flags in (("whole", []), ("half", ["--half"])):
+            folder = self.folder / name
+            done = call("reference", "--references", folder, *SIZE, "--spp", 32, "--frames", 1, *flags)
+            self.assertEqual(0, done.returncode, done.stderr)
+            sizes.append(sum(path.stat().st_size for path in folder.rglob("*.exr")))
+        self.assertLess(sizes[1], 0.7 * sizes[0])
+
     def test_bad_input_is_answered(self):
         self.expect_user_error(call("quality", "--scene", "atelie"), "atelier, breakfast_room")
         self.expect_user_error(call("quality", "--light-field", "--scored-views", *SIZE), "--scored-views")

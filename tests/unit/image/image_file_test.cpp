@@ -187,6 +187,21 @@ TEST(ReadRgbF32, ReadsFloatExrExactly) {
     EXPECT_THROW(read_rgb_f32(folder.path() / "ramp.exr", {.max_pixels = 11}), UserError);
 }
 
+TEST(ReadRgbF32, HalfFloatsKeepElevenBitsAndEndAtTheirLargest) {
+    const test::TestFolder folder;
+    RgbF32 image{2, 1, {glm::vec3(1.0F / 3.0F, 1000.7F, 0.0F), glm::vec3(1e6F, 6e-5F, 1.0F)}};
+    write_exr(folder.path() / "light.exr", image, ExrPrecision::kHalf);
+    const RgbF32 read = read_rgb_f32(folder.path() / "light.exr", kNoLimits);
+    image.pixels[1].x = 65504.0F;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            const float value = image.pixels[i][channel];
+            EXPECT_NEAR(read.pixels[i][channel], value, value / 2048) << i << ", " << channel; // half of the last bit
+        }
+    }
+    EXPECT_NE(read.pixels[0].x, image.pixels[0].x);
+}
+
 TEST(ReadRgbF32, ClampsInfinityAndRefusesNanAndNegativeValues) {
     const test::TestFolder folder;
     const auto file = folder.path() / "light.exr";
