@@ -60,11 +60,13 @@ Surroundings look_around(Centre c, int radius) {
     Light squares = sum;
     float total = 0.0;
     float total_of_squares = 0.0;
-    int side = 2 * radius + 1;
-    for (int i = 0; i < side * side; ++i) {
-        ivec2 offset = ivec2(i % side, i / side) - radius;
-        ivec2 at = c.at + offset;
-        if (is_inside(at)) {
+    for (int y = -radius; y <= radius; ++y) {
+        for (int x = -radius; x <= radius; ++x) {
+            ivec2 offset = ivec2(x, y);
+            ivec2 at = c.at + offset;
+            if (!is_inside(at)) {
+                continue;
+            }
             int texel = tap_texel(c, at);
             uvec4 other = texelFetch(geometry_, texel);
             float least = other.z == c.id ? kLeastWeight : 0.0;
@@ -141,7 +143,7 @@ Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
 }
 
 void main() {
-    uint index = linear_index();
+    uint index = listed_index(params.groups);
     if (index >= params.width * params.height * params.page_count) {
         return;
     }

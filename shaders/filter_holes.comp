@@ -39,17 +39,19 @@ void main() {
     float own_weight = max(own.frames, 1.0);
     HoleSum sum = HoleSum(own.diffuse * own_weight, own.specular * own_weight, 0.0, own_weight);
     Gathered around = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
-    for (int i = 0; i < (2 * kRadius + 1) * (2 * kRadius + 1); ++i) {
-        ivec2 step = ivec2(i % (2 * kRadius + 1), i / (2 * kRadius + 1)) - kRadius;
-        if (step == ivec2(0)) {
-            continue;
-        }
-        ivec2 at = ivec2(pixel.x, pixel.y) + step;
-        float weight = exp(-0.25 * dot(vec2(step), vec2(step)));
-        if (hole_number(frame, pixel.view, at, params.width, params.height) != kNoIndex) {
-            gather_hole(frame, pixel.view, camera, at, weight, target, kSlack, true, sum);
-        } else {
-            gather_sources_at(frame.cameras, step, weight * kSourceFrames, target, around);
+    for (int y = -kRadius; y <= kRadius; ++y) {
+        for (int x = -kRadius; x <= kRadius; ++x) {
+            ivec2 step = ivec2(x, y);
+            if (step == ivec2(0)) {
+                continue;
+            }
+            ivec2 at = ivec2(pixel.x, pixel.y) + step;
+            float weight = exp(-0.25 * dot(vec2(step), vec2(step)));
+            if (hole_number(frame, pixel.view, at, params.width, params.height) != kNoIndex) {
+                gather_hole(frame, pixel.view, camera, at, weight, target, kSlack, true, sum);
+            } else {
+                gather_sources_at(frame.cameras, step, weight * kSourceFrames, target, around);
+            }
         }
     }
     HoleLight light;

@@ -27,26 +27,27 @@ float variance_of(int texel) {
 float estimate_variance(Centre c) {
     float frames = texelFetch(length_, tap_texel(c, c.at)).x;
     bool is_young = params.has_moments != 0u && frames < kYoungFrames;
-    int side = is_young ? 5 : 3;
+    int radius = is_young ? 2 : 1;
     float variance = 0.0;
     vec2 moments = vec2(0.0);
     float total = 0.0;
-    for (int i = 0; i < side * side; ++i) {
-        ivec2 offset = ivec2(i % side, i / side) - side / 2;
-        ivec2 at = c.at + offset;
-        if (!is_inside(at)) {
-            continue;
-        }
-        int texel = tap_texel(c, at);
-        if (is_young) {
-            float weight = geometry_weight(c, offset, texelFetch(geometry_, texel));
-            vec4 light = texelFetch(diffuse_, texel);
-            moments += weight * vec2(luminance(light.rgb), light.a);
-            total += weight;
-        } else {
-            float weight = 0.25 / float(1 << (abs(offset.x) + abs(offset.y))); // 3×3 Gaussian
-            variance += weight * variance_of(texel);
-            total += weight;
+    for (int y = -radius; y <= radius; ++y) {
+        for (int x = -radius; x <= radius; ++x) {
+            ivec2 at = c.at + ivec2(x, y);
+            if (!is_inside(at)) {
+                continue;
+            }
+            int texel = tap_texel(c, at);
+            if (is_young) {
+                float weight = geometry_weight(c, ivec2(x, y), texelFetch(geometry_, texel));
+                vec4 light = texelFetch(diffuse_, texel);
+                moments += weight * vec2(luminance(light.rgb), light.a);
+                total += weight;
+            } else {
+                float weight = 0.25 / float(1 << (abs(x) + abs(y))); // 3×3 Gaussian
+                variance += weight * variance_of(texel);
+                total += weight;
+            }
         }
     }
     moments /= max(total, 1e-6);
@@ -54,7 +55,7 @@ float estimate_variance(Centre c) {
 }
 
 void main() {
-    uint pixel = linear_index();
+    uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }
@@ -67,14 +68,15 @@ void main() {
     Centre c = load_centre(pixel, geometry);
     light.a = variance_of(int(pixel));
     Signal s = make_signal(light, estimate_variance(c));
-    int side = 2 * params.radius + 1;
-    for (int i = 0; i < side * side; ++i) {
-        ivec2 tap = ivec2(i % side, i / side) - params.radius;
-        ivec2 offset = tap * int(params.step);
-        ivec2 at = c.at + offset;
-        if (tap != ivec2(0) && is_inside(at)) {
+    for (int y = -params.radius; y <= params.radius; ++y) {
+        for (int x = -params.radius; x <= params.radius; ++x) {
+            ivec2 offset = ivec2(x, y) * int(params.step);
+            ivec2 at = c.at + offset;
+            if (offset == ivec2(0) || !is_inside(at)) {
+                continue;
+            }
             int texel = tap_texel(c, at);
-            float weight = kFilterKernel[abs(tap.x)] * kFilterKernel[abs(tap.y)] *
+            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] *
                            geometry_weight(c, offset, texelFetch(geometry_, texel));
             if (weight > 1e-4) {
                 add_tap(s, vec4(texelFetch(diffuse_, texel).rgb, variance_of(texel)), weight);

@@ -41,15 +41,17 @@ Around look_around(Centre c, bool is_young, float frames) {
     Around sum = Around(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), 0.0);
     int radius = is_young ? 3 : 2;
     int stride = is_young ? max(1, 4 - int(frames)) : 1;
-    int side = 2 * radius + 1;
-    for (int i = 0; i < side * side; ++i) {
-        ivec2 offset = (ivec2(i % side, i / side) - radius) * stride;
-        ivec2 at = c.at + offset;
-        if (is_inside(at)) {
-            int texel = tap_texel(c, at);
-            uvec4 other = texelFetch(geometry_, texel);
-            float least = other.z == c.id ? kLeastWeight : 0.0;
-            add_tap(sum, texel, offset == ivec2(0) ? 1.0 : max(geometry_weight(c, offset, other), least), is_young);
+    for (int y = -radius; y <= radius; ++y) {
+        for (int x = -radius; x <= radius; ++x) {
+            ivec2 offset = ivec2(x, y) * stride;
+            ivec2 at = c.at + offset;
+            if (is_inside(at)) {
+                int texel = tap_texel(c, at);
+                uvec4 other = texelFetch(geometry_, texel);
+                float least = other.z == c.id ? kLeastWeight : 0.0;
+                float weight = offset == ivec2(0) ? 1.0 : max(geometry_weight(c, offset, other), least);
+                add_tap(sum, texel, weight, is_young);
+            }
         }
     }
     return sum;
@@ -64,7 +66,7 @@ float limiting_scale(float slow, float fast, float mean, float mean_of_squares) 
 }
 
 void main() {
-    uint pixel = linear_index();
+    uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }

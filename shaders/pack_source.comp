@@ -13,11 +13,16 @@ void main() {
     uint item = linear_index();
     if (item < params.pixel_count) {
         uint pixel = params.first_pixel + item;
-        vec3 diffuse = params.diffuse_in.at[pixel].rgb;
-        if (params.is_punctual_apart != 0u) {
-            diffuse += params.punctual_in.at[pixel].rgb;
+        vec3 diffuse = vec3(0.0);
+        vec3 specular = vec3(0.0);
+        if (params.id.at[pixel] != 0xFFFFFFFFu) { // what filters left there may be old
+            diffuse = params.diffuse_in.at[pixel].rgb;
+            if (params.is_punctual_apart != 0u) {
+                diffuse += params.punctual_in.at[pixel].rgb;
+            }
+            specular = params.specular_in.at[pixel].rgb;
         }
         params.diffuse.at[pixel] = pack_r11g11b10(diffuse);
-        params.specular.at[pixel] = pack_r11g11b10(params.specular_in.at[pixel].rgb);
+        params.specular.at[pixel] = pack_r11g11b10(specular);
     }
 }

@@ -35,5 +35,7 @@ void main() {
     WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
     vec3 meets = intersect_plane(triangle, camera.origin, direction);
     Surface s = make_surface(triangle, meets.xy, normalize(direction), meets.z / camera.focal_px);
+    params.flags.at[index / kLinearGroup] = 1u;
+    params.tile_flags.at[tile_of(at, params.width, params.height)] = 1u;
     store(index, geometry_texel(s, seen.instance, dot(s.position - camera.origin, camera.forward)));
 }

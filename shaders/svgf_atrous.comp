@@ -51,7 +51,7 @@ void store(uint pixel, vec4 diffuse, vec4 specular) {
 }
 
 void main() {
-    uint pixel = linear_index();
+    uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }
@@ -66,15 +66,16 @@ void main() {
     vec2 variance = blurred_variance(c, vec2(diffuse.a, specular.a));
     Signal d = make_signal(diffuse, variance.x);
     Signal s = make_signal(specular, variance.y);
-    int side = 2 * params.radius + 1;
-    for (int i = 0; i < side * side; ++i) {
-        ivec2 tap = ivec2(i % side, i / side) - params.radius;
-        ivec2 offset = tap * int(params.step);
-        ivec2 at = c.at + offset;
-        if (tap != ivec2(0) && is_inside(at)) {
+    for (int y = -params.radius; y <= params.radius; ++y) {
+        for (int x = -params.radius; x <= params.radius; ++x) {
+            ivec2 offset = ivec2(x, y) * int(params.step);
+            ivec2 at = c.at + offset;
+            if (offset == ivec2(0) || !is_inside(at)) {
+                continue;
+            }
             int texel = tap_texel(c, at);
             uvec4 other = texelFetch(geometry_, texel);
-            float weight = kFilterKernel[abs(tap.x)] * kFilterKernel[abs(tap.y)] * geometry_weight(c, offset, other);
+            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] * geometry_weight(c, offset, other);
             if (weight > 1e-4) {
                 add_tap(d, texelFetch(diffuse_, texel), weight);
                 float alike = params.follows_lobes != 0u ? lobe_similarity(c, offset, other) : 1.0;

@@ -19,35 +19,36 @@ void pass_through(uint pixel) {
 }
 
 void main() {
-    uint pixel = linear_index();
+    uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
         return;
     }
     uvec4 geometry = texelFetch(geometry_, int(pixel));
     float frames = texelFetch(length_, int(pixel)).x;
-    bool is_short = frames < 4.0 && geometry.z != 0xFFFFFFFFu;
+    if (frames >= 4.0 || geometry.z == 0xFFFFFFFFu) {
+        pass_through(pixel);
+        return;
+    }
     Centre c = load_centre(pixel, geometry);
     vec3 diffuse = vec3(0.0);
     vec3 specular = vec3(0.0);
     vec4 moments = vec4(0.0);
     float total = 0.0;
-    for (int i = 0; is_short && i < 49; ++i) { // 7×7
-        ivec2 offset = ivec2(i % 7 - 3, i / 7 - 3);
-        ivec2 at = c.at + offset;
-        if (is_inside(at)) {
-            int texel = tap_texel(c, at);
-            uvec4 other = texelFetch(geometry_, texel);
-            float least = other.z == c.id ? kLeastWeight : 0.0;
-            float weight = offset == ivec2(0) ? 1.0 : max(geometry_weight(c, offset, other), least);
-            diffuse += weight * texelFetch(diffuse_, texel).rgb;
-            specular += weight * texelFetch(specular_, texel).rgb;
-            moments += weight * texelFetch(moments_, texel);
-            total += weight;
+    for (int y = -3; y <= 3; ++y) {
+        for (int x = -3; x <= 3; ++x) {
+            ivec2 offset = ivec2(x, y);
+            ivec2 at = c.at + offset;
+            if (is_inside(at)) {
+                int texel = tap_texel(c, at);
+                uvec4 other = texelFetch(geometry_, texel);
+                float least = other.z == c.id ? kLeastWeight : 0.0;
+                float weight = offset == ivec2(0) ? 1.0 : max(geometry_weight(c, offset, other), least);
+                diffuse += weight * texelFetch(diffuse_, texel).rgb;
+                specular += weight * texelFetch(specular_, texel).rgb;
+                moments += weight * texelFetch(moments_, texel);
+                total += weight;
+            }
         }
-    }
-    if (!is_short) {
-        pass_through(pixel);
-        return;
     }
     moments /= total;
     float boost = 4.0 / max(frames, 1.0);

@@ -186,7 +186,7 @@ void keep_taps(uint pixel, vec2 position, uint accepted) {
 }
 
 void main() {
-    uint index = linear_index();
+    uint index = listed_index(params.groups);
     if (index >= params.width * params.height * params.page_count) {
         return;
     }

@@ -21,7 +21,7 @@ std::vector<gpu::Binding> texel_bindings(std::uint32_t count) {
 }
 
 void LightBuffer::resize(const gpu::Device& device, std::uint32_t pixel_count) {
-    buffer = gpu::Buffer(device, static_cast<std::uint64_t>(pixel_count) * 16);
+    buffer = gpu::make_zero_buffer(device, static_cast<std::uint64_t>(pixel_count) * 16);
     view = gpu::TexelView(device, buffer, kFloats);
 }
 
@@ -34,8 +34,8 @@ void SourceHistory::resize(const gpu::Device& device, std::uint32_t pixel_count)
     const std::uint64_t count = pixel_count;
     geometry = gpu::Buffer(device, count * 16);
     light.resize(device, pixel_count);
-    moments = gpu::Buffer(device, count * 16);
-    length = gpu::Buffer(device, count * 4);
+    moments = gpu::make_zero_buffer(device, count * 16);
+    length = gpu::make_zero_buffer(device, count * 4);
     geometry_view = gpu::TexelView(device, geometry, VK_FORMAT_R32G32B32A32_UINT);
     moments_view = gpu::TexelView(device, moments, kFloats);
     length_view = gpu::TexelView(device, length, VK_FORMAT_R32_SFLOAT);
@@ -101,6 +101,7 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.punctual = frame.is_punctual_apart ? now().punctual.buffer.address() : 0;
     params.history_length = now().length.address();
     params.taps = options.keeps_taps ? taps_.address() : 0;
+    params.groups = frame.groups->list().address();
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
@@ -112,7 +113,7 @@ void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, con
     params.alpha = frame.least_weight * options.share;
     params.moments_alpha = frame.least_weight;
     recorder.stage("temporal");
-    recorder.dispatch(kernel_, {&scene_.bindings(), &sets_[current_]}, params, linear_groups(texel_count_));
+    dispatch_listed(recorder, kernel_, {&scene_.bindings(), &sets_[current_]}, params, *frame.groups);
     recorder.barrier();
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
 #include "core/lightfield/render_settings.h"
+#include "core/render/group_list.h"
 #include "core/scene/gpu_scene.h"
 #include "shaders/shared/frame.h"
 
@@ -10,7 +10,8 @@
 
 namespace fieldcast::render {
 
-/// Rgb and alpha per pixel of all pages, for kernels that write it and kernels that fetch it.
+/// Rgb and alpha per pixel of all pages, for kernels that write it and kernels that fetch it. 0 at first: filters
+/// multiply by 0 what pixels hold that they did not run on.
 struct LightBuffer {
     gpu::Buffer buffer;
     gpu::TexelView view;
@@ -46,15 +47,16 @@ struct FilterFrame {
     std::uint64_t cameras = 0;
     std::uint64_t visibility = 0;
     std::uint64_t layers = 0;
+    const GroupList* groups = nullptr; ///< to run on
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::uint32_t page_count = 1;
     std::uint32_t source_count = 1;
-    bool has_history = false; ///< that may enter the average
+    bool has_history = false;       ///< that may enter the average
     bool is_punctual_apart = false; ///< as the accumulation was resized
-    bool is_still = false;    ///< one of a series that is averaged and not filtered
-    float least_weight = 1.0F; ///< of the new frame in the average
-    std::uint32_t number = 0; ///< of the frame: what varies from frame to frame
+    bool is_still = false;          ///< one of a series that is averaged and not filtered
+    float least_weight = 1.0F;      ///< of the new frame in the average
+    std::uint32_t number = 0;       ///< of the frame: what varies from frame to frame
     RenderSettings settings;
 };
 
@@ -88,7 +90,7 @@ public:
     /// Of this frame: its geometry from the beginning, the rest once record() ran. Filters may replace its
     /// illumination.
     const SourceHistory& now() const { return history_[current_]; }
-    const SourceHistory& before() const { return history_[1 - current_]; } ///< of the last one
+    const SourceHistory& before() const { return history_[1 - current_]; }     ///< of the last one
     const std::array<SourceHistory, 2>& histories() const { return history_; } ///< now() is histories()[current()]
     std::uint32_t current() const { return current_; }
     const gpu::Buffer& taps() const { return taps_; } ///< HistoryTaps: the pixels of the frame before that entered

@@ -40,10 +40,9 @@ void Bmfr::resize(std::uint32_t block_count) {
         return;
     }
     resize_count_ = accumulation_.resize_count();
-    texel_count_ = accumulation_.texel_count();
     has_filtered_ = false;
     for (Light& light : filtered_) {
-        light.resize(device_, texel_count_);
+        light.resize(device_, accumulation_.texel_count());
     }
     bind();
 }
@@ -68,6 +67,7 @@ const Light& Bmfr::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     const Light& result = filtered_[accumulation_.current()];
     shared::BmfrParams params{};
     params.cameras = frame.cameras;
+    params.groups = frame.groups->list().address();
     params.fits = fits_.address();
     params.taps = accumulation_.taps().address();
     params.diffuse = result.diffuse.buffer.address();
@@ -86,7 +86,7 @@ const Light& Bmfr::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     recorder.stage("denoise");
     recorder.dispatch(fit_, {&set}, params, {blocks.x, blocks.y, frame.page_count});
     recorder.barrier();
-    recorder.dispatch(evaluate_, {&set}, params, linear_groups(texel_count_));
+    dispatch_listed(recorder, evaluate_, {&set}, params, *frame.groups);
     recorder.barrier();
     has_filtered_ = true;
     return result;

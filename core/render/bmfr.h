@@ -39,7 +39,6 @@ private:
     gpu::Kernel fit_;
     gpu::Kernel evaluate_;
     std::uint64_t resize_count_ = 0;
-    std::uint32_t texel_count_ = 0;
     gpu::Buffer fits_;
     std::array<Light, 2> filtered_;       ///< by the accumulation's current history
     std::array<gpu::BindingSet, 2> sets_; ///< likewise

@@ -18,6 +18,7 @@
 #include "shaders/interleave_source.spv.h"
 #include "shaders/keep_holes.spv.h"
 #include "shaders/limit_history.spv.h"
+#include "shaders/list_groups.spv.h"
 #include "shaders/list_holes.spv.h"
 #include "shaders/merge_light.spv.h"
 #include "shaders/name_triangles.spv.h"
@@ -77,6 +78,7 @@ const EmbeddedKernel kKernels[] = {
     {KernelId::kInterleaveSource, "interleave_source", interleave_source_spv, interleave_source_spv},
     {KernelId::kKeepHoles, "keep_holes", keep_holes_spv, keep_holes_spv},
     {KernelId::kLimitHistory, "limit_history", limit_history_spv, limit_history_spv},
+    {KernelId::kListGroups, "list_groups", list_groups_spv, list_groups_spv},
     {KernelId::kListHoles, "list_holes", list_holes_spv, list_holes_spv},
     {KernelId::kMergeLight, "merge_light", merge_light_spv, merge_light_spv},
     {KernelId::kNameTriangles, "name_triangles", name_triangles_spv, name_triangles_spv},

@@ -19,6 +19,7 @@ enum class KernelId {
     kInterleaveSource,
     kKeepHoles,
     kLimitHistory,
+    kListGroups,
     kListHoles,
     kMergeLight,
     kNameTriangles,

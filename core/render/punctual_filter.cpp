@@ -21,9 +21,8 @@ void PunctualFilter::resize() {
         return;
     }
     resize_count_ = accumulation_.resize_count();
-    texel_count_ = accumulation_.texel_count();
     for (LightBuffer& light : scratch_) {
-        light.resize(device_, texel_count_);
+        light.resize(device_, accumulation_.texel_count());
     }
     bind();
 }
@@ -47,6 +46,7 @@ const gpu::Buffer& PunctualFilter::record(gpu::Recorder& recorder, const FilterF
     resize();
     shared::FilterPunctualParams params{};
     params.cameras = frame.cameras;
+    params.groups = frame.groups->list().address();
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
@@ -63,7 +63,7 @@ const gpu::Buffer& PunctualFilter::record(gpu::Recorder& recorder, const FilterF
         params.radius = level == 0 ? 2 : 1;
         params.has_moments = level == 0 ? 1 : 0;
         params.punctual = scratch_[output - 1].buffer.address();
-        recorder.dispatch(kernel_, {&sets_[accumulation_.current()][input]}, params, linear_groups(texel_count_));
+        dispatch_listed(recorder, kernel_, {&sets_[accumulation_.current()][input]}, params, *frame.groups);
         recorder.barrier();
         input = output;
     }

@@ -23,7 +23,6 @@ private:
     gpu::BindingLayout layout_;
     gpu::Kernel kernel_;
     std::uint64_t resize_count_ = 0;
-    std::uint32_t texel_count_ = 0;
     std::array<LightBuffer, 2> scratch_;                 ///< ping-pong
     std::array<std::array<gpu::BindingSet, 3>, 2> sets_; ///< by current history: reads that, scratch 0, scratch 1
 };

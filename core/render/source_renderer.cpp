@@ -93,6 +93,7 @@ void SourceRenderer::State::record_trace(bool ends_in_history) {
     params.cameras = cameras.address();
     params.visibility = surfaces.visibility().address();
     params.layers = surfaces.layers().address();
+    params.tiles = surfaces.tiles().list().address();
     params.diffuse = filter.noisy_diffuse().address();
     params.specular = filter.noisy_specular().address();
     params.punctual = is_punctual_apart ? filter.noisy_punctual().address() : 0;
@@ -110,8 +111,7 @@ void SourceRenderer::State::record_trace(bool ends_in_history) {
                   (ends_in_history ? shared::kPathEndsInHistory : 0U);
     params.max_indirect = max_indirect(header);
     recorder.stage("source_trace");
-    recorder.dispatch(trace, {&scene.bindings()}, params,
-                      {gpu::groups_for(camera.width_px, 8), gpu::groups_for(camera.height_px, 8), planes.page_count()});
+    dispatch_listed(recorder, trace, {&scene.bindings()}, params, surfaces.tiles());
     recorder.barrier();
 }
 
@@ -121,6 +121,7 @@ void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
     filter.record(recorder, {.cameras = cameras.address(),
                              .visibility = surfaces.visibility().address(),
                              .layers = surfaces.layers().address(),
+                             .groups = &surfaces.groups(),
                              .width = camera.width_px,
                              .height = camera.height_px,
                              .page_count = planes.page_count(),
@@ -149,6 +150,7 @@ void SourceRenderer::State::pack_pages(std::uint32_t first, std::uint32_t count,
         return;
     }
     shared::PackParams params{};
+    params.id = planes.plane(PlaneSemantic::kId).address();
     params.diffuse_in = light.diffuse.address();
     params.specular_in = light.specular.address();
     params.punctual_in = light.punctual != nullptr ? light.punctual->address() : 0;

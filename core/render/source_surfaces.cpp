@@ -10,7 +10,8 @@ namespace fieldcast::render {
 SourceSurfaces::SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene)
     : device_(device), scene_(scene),
       trace_(make_scene_kernel(device, scene, KernelId::kVisibility, sizeof(shared::VisibilityParams))),
-      surfaces_(make_scene_kernel(device, scene, KernelId::kSourceSurfaces, sizeof(shared::SourceSurfacesParams))) {}
+      surfaces_(make_scene_kernel(device, scene, KernelId::kSourceSurfaces, sizeof(shared::SourceSurfacesParams))),
+      groups_(device), tiles_(device) {}
 
 void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
                             const gpu::Buffer& geometry) {
@@ -20,6 +21,9 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
         visibility_ = gpu::Buffer(device_, padded * 8);
         layers_ = gpu::Buffer(device_, scene_.has_blend() ? padded * 16 : 16);
     }
+    groups_.resize(gpu::groups_for(planes.texel_count(), shared::kLinearGroup));
+    tiles_.resize(gpu::groups_for(widened.width_px, shared::kTileSide) *
+                  gpu::groups_for(widened.height_px, shared::kTileSide) * planes.page_count());
     shared::VisibilityParams visible{};
     visible.cameras = cameras;
     visible.visibility = visibility_.address();
@@ -28,6 +32,8 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     visible.height = widened.height_px;
     visible.view_count = planes.source_count();
     recorder.stage("source_visibility");
+    groups_.clear(recorder);
+    tiles_.clear(recorder);
     recorder.dispatch(
         trace_, {&scene_.bindings()}, visible,
         {gpu::groups_for(widened.width_px, 8), gpu::groups_for(widened.height_px, 8), visible.view_count});
@@ -42,12 +48,17 @@ void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes,
     params.id = planes.plane(PlaneSemantic::kId).address();
     params.material = planes.plane(PlaneSemantic::kMaterial).address();
     params.geometry = geometry.address();
+    params.flags = groups_.flags().address();
+    params.tile_flags = tiles_.flags().address();
     params.width = widened.width_px;
     params.height = widened.height_px;
     params.page_count = planes.page_count();
     params.source_count = planes.source_count();
     recorder.stage("source_surfaces");
     recorder.dispatch(surfaces_, {&scene_.bindings()}, params, linear_groups(planes.texel_count()));
+    recorder.barrier();
+    groups_.record(recorder, widened.width_px);
+    tiles_.record(recorder, 0);
     recorder.barrier();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/gpu/recorder.h"
+#include "core/render/group_list.h"
 #include "core/render/source_planes.h"
 #include "core/scene/gpu_scene.h"
 
@@ -20,12 +21,17 @@ public:
 
     const gpu::Buffer& visibility() const { return visibility_; }
     const gpu::Buffer& layers() const { return layers_; }
+    /// Of all pages, those with a surface: groups of kLinearGroup pixels with those around them, and tiles.
+    const GroupList& groups() const { return groups_; }
+    const GroupList& tiles() const { return tiles_; }
 
 private:
     const gpu::Device& device_;
     const scene::GpuScene& scene_;
     gpu::Kernel trace_;
     gpu::Kernel surfaces_;
+    GroupList groups_;
+    GroupList tiles_;
     gpu::Buffer visibility_;
     gpu::Buffer layers_; ///< BLEND surfaces, kMaxLayers per pixel
 };

@@ -82,6 +82,7 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     const Tuning& tuning = tuning_of(frame.settings.denoiser);
     shared::FilterParams params{};
     params.cameras = frame.cameras;
+    params.groups = frame.groups->list().address();
     params.width = frame.width;
     params.height = frame.height;
     params.page_count = frame.page_count;
@@ -91,13 +92,12 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     params.normal_squarings = tuning.normal_squarings;
     params.follows_lobes = tuning.follows_lobes ? 1 : 0;
     params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
-    const gpu::GroupCount groups = linear_groups(texel_count_);
     recorder.stage("denoise");
     std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
     const auto run = [&](const gpu::Kernel& kernel, std::uint32_t output) {
         params.diffuse = scratch_[output - 1].diffuse.buffer.address();
         params.specular = scratch_[output - 1].specular.buffer.address();
-        recorder.dispatch(kernel, {&sets_[accumulation_.current()][input]}, params, groups);
+        dispatch_listed(recorder, kernel, {&sets_[accumulation_.current()][input]}, params, *frame.groups);
         recorder.barrier();
         input = output;
     };

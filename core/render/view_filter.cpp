@@ -28,7 +28,7 @@ std::uint64_t bytes_per_pixel(const RenderSettings& settings) {
 } // namespace
 
 ViewFilter::ViewFilter(const gpu::Device& device, const scene::GpuScene& scene)
-    : device_(device), scene_(scene), filter_(device, scene),
+    : device_(device), scene_(scene), filter_(device, scene), groups_(device),
       shade_(make_scene_kernel(device, scene, KernelId::kShadeViews, sizeof(shared::ShadeViewsParams))) {}
 
 bool ViewFilter::is_wanted(const FrameHeader& header) {
@@ -68,6 +68,9 @@ void ViewFilter::begin(const FrameHeader& header, const ViewRequest& request,
     request_ = request;
     pose_count_ = scene_.pose_count();
     filter_.resize(texel_count());
+    if (groups_.resize(gpu::groups_for(texel_count(), shared::kLinearGroup))) {
+        groups_.list_all();
+    }
 }
 
 shared::ViewLight ViewFilter::light() const {
@@ -79,6 +82,7 @@ FilterFrame ViewFilter::make_frame(const FrameHeader& header, const Targets& tar
     FilterFrame frame{.cameras = cameras_.address(),
                       .visibility = targets.visibility.address(),
                       .layers = targets.layers.address(),
+                      .groups = &groups_,
                       .width = request_.width_px,
                       .height = request_.height_px,
                       .page_count = view_count(),

@@ -50,6 +50,7 @@ private:
     const gpu::Device& device_;
     const scene::GpuScene& scene_;
     IlluminationFilter filter_;
+    GroupList groups_; ///< all
     gpu::Kernel shade_;
     ViewRequest request_; ///< of this frame, later of the one before
     std::uint64_t pose_count_ = 0;

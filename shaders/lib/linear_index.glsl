@@ -9,4 +9,16 @@ uint linear_index() {
     return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kLinearGroup + gl_LocalInvocationID.x;
 }
 
+// The group of a list that this invocation belongs to; 0xFFFFFFFF beyond its end.
+uint listed_group(UintBuffer list) {
+    uint at = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    return at < list.at[kGroupListCount] ? list.at[kGroupListFirst + at] : 0xFFFFFFFFu;
+}
+
+// Like linear_index() for a kernel that runs on the groups of a list.
+uint listed_index(UintBuffer list) {
+    uint group = listed_group(list);
+    return group != 0xFFFFFFFFu ? group * kLinearGroup + gl_LocalInvocationID.x : group;
+}
+
 #endif

@@ -19,6 +19,22 @@ PagePixel locate_page_pixel(uint index, uint width, uint height) {
     return PagePixel(page, pixel, pixel - y * width, y);
 }
 
+// Tiles of kTileSide² pixels: row by row, one page after the other.
+uint tile_of(PagePixel at, uint width, uint height) {
+    uvec2 tiles = (uvec2(width, height) + kTileSide - 1u) / kTileSide;
+    return (at.page * tiles.y + at.y / kTileSide) * tiles.x + at.x / kTileSide;
+}
+
+// The pixel `inside` of a tile, which may lie beyond the page's right or lower edge.
+PagePixel tile_pixel(uint tile, uvec2 inside, uint width, uint height) {
+    uvec2 tiles = (uvec2(width, height) + kTileSide - 1u) / kTileSide;
+    uint row = tile / tiles.x;
+    uint page = row / tiles.y;
+    uint x = (tile - row * tiles.x) * kTileSide + inside.x;
+    uint y = (row - page * tiles.y) * kTileSide + inside.y;
+    return PagePixel(page, y * width + x, x, y);
+}
+
 uint source_of_page(uint page, uint source_count) {
     return page % source_count;
 }

@@ -29,6 +29,7 @@ struct BmfrParams {
     HistoryTapsBuffer taps;
     Vec4Buffer diffuse;     // out, of bmfr_evaluate.comp: rgb
     Vec4Buffer specular;
+    UintBuffer groups;      // of bmfr_evaluate.comp, to run on
     uint width;
     uint height;
     uint page_count;

@@ -23,6 +23,23 @@ SHARED_BUFFER(CameraBuffer, CameraRecord);
 const uint kLinearGroup = 64;
 const uint kLinearGroupsX = 32768;
 
+// Side of the groups of kernels over tiles (lib/pages.glsl), so that rays of a group start side by side.
+const uint kTileSide = 8;
+
+// A list of groups of pixels, for kernels that run on these only: how many there are, the group counts of an indirect
+// dispatch, and which.
+const uint kGroupListCount = 0;
+const uint kGroupListDispatch = 1;
+const uint kGroupListFirst = 4;
+
+// list_groups.comp: groups whose flag is set, and if they are of kLinearGroup pixels those that touch one of them.
+struct ListGroupsParams {
+    UintBuffer flags;
+    UintBuffer list;  // out
+    uint width;       // pixels above and below each other are that far apart; 0: a group touches no other
+    uint group_count;
+};
+
 // What a pixel sees: the first surface that is not BLEND.
 struct Visibility {
     uint instance;    // kNoInstance: nothing
@@ -95,6 +112,7 @@ struct TraceSourceParams {
     CameraBuffer cameras;
     VisibilityBuffer visibility;
     VisibilityBuffer layers;
+    UintBuffer tiles;            // to run on; pixels without a surface are 0 or left alone
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
     Vec4Buffer specular;         // out
     Vec4Buffer punctual; // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
@@ -136,6 +154,8 @@ struct SourceSurfacesParams {
     UintBuffer id;
     UintBuffer material;
     Uvec4Buffer geometry; // out: GeometryTexel
+    UintBuffer flags;     // out: not 0 for groups of kLinearGroup pixels with a surface; the others are left alone
+    UintBuffer tile_flags; // likewise for tiles
     uint width;
     uint height;
     uint page_count;
@@ -183,6 +203,7 @@ struct TemporalParams {
     Vec4Buffer punctual;         // out, with kFlagPunctualApart: rgb, a = second moment of luminance
     FloatBuffer history_length;  // out: frames
     HistoryTapsBuffer taps;      // out, with kFlagKeepTaps
+    UintBuffer groups;           // to run on
     uint width;
     uint height;
     uint page_count;
@@ -207,6 +228,7 @@ struct FilterParams {
     CameraBuffer cameras; // of the sources
     Vec4Buffer diffuse;  // out: rgb, a = variance
     Vec4Buffer specular;
+    UintBuffer groups;   // to run on
     uint width;
     uint height;
     uint page_count;
@@ -231,6 +253,7 @@ const uint kFilterLength = 4;
 struct FilterPunctualParams {
     CameraBuffer cameras;
     Vec4Buffer punctual; // out: rgb, a = variance
+    UintBuffer groups;   // to run on
     uint width;
     uint height;
     uint page_count;
@@ -244,8 +267,9 @@ struct FilterPunctualParams {
     float alpha;         // least weight of a frame in this light
 };
 
-// pack_source.comp: illumination into wire precision.
+// pack_source.comp: illumination into wire precision; 0 where there is no surface.
 struct PackParams {
+    UintBuffer id;
     Vec4Buffer diffuse_in;
     Vec4Buffer specular_in;
     Vec4Buffer punctual_in; // added to diffuse, with is_punctual_apart

@@ -142,8 +142,12 @@ protected:
         gpu::write_buffer(device(), now.length, std::as_bytes(std::span(lengths)));
         Bmfr bmfr(device(), accumulation);
         gpu::Recorder recorder(device());
+        GroupList groups(device());
+        groups.resize(gpu::groups_for(count, shared::kLinearGroup));
+        groups.list_all();
         FilterFrame frame;
         frame.cameras = camera.address();
+        frame.groups = &groups;
         frame.width = picture.camera.width_px;
         frame.height = picture.camera.height_px;
         frame.number = frame_number;

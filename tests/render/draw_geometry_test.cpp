@@ -10,7 +10,7 @@ namespace {
 
 using DrawGeometryTest = RenderTest;
 
-/// Two boxes that stand still, one of them scaled, and two spheres below a node that turns.
+/// Two boxes that stand still, one of them scaled, and two spheres below a node that slides.
 scene::Scene mobile() {
     SceneBuilder builder;
     const std::uint32_t white = builder.add_material(diffuse(glm::vec3(0.5F)));
@@ -18,18 +18,16 @@ scene::Scene mobile() {
     veil.alpha_mode = scene::AlphaMode::kBlend;
     builder.add(box({0, 0, 0}, {1, 2, 3}), white);
     builder.add(box({0, 0, 0}, {1, 1, 1}), white, glm::mat4(glm::mat3(3.0F)) * at({5, 0, 0}));
-    const std::uint32_t turning = builder.add_node(at({0, 4, 0}));
+    const std::uint32_t sliding = builder.add_node(at({0, 4, 0}));
     builder.add(sphere(1.0F, 32, Shading::kSmooth), white, at({2, 0, 0}));
     builder.add(sphere(0.5F, 32, Shading::kFlat), builder.add_material(veil), at({-2, 0, 0}));
+    builder.slide(sliding, {0, 4, 0}, {0, 5, 0});
     scene::Scene scene = builder.scene();
     for (const std::uint32_t instance : {2U, 3U}) {
-        scene.nodes[scene.instances[instance].node].parent = turning;
+        scene::Node& node = scene.nodes[scene.instances[instance].node];
+        node.parent = sliding;
+        node.is_animated = true;
     }
-    scene.channels.push_back({.node = turning,
-                              .path = scene::AnimationPath::kTranslation,
-                              .times_s = {0, 1},
-                              .values = {{0, 4, 0, 0}, {0, 5, 0, 0}}});
-    scene.duration_s = 1.0;
     return scene;
 }
 
@@ -43,7 +41,7 @@ TEST(RigidGroups, HoldWhatMovesTogether) {
     EXPECT_EQ(groups[1].node, scene.channels[0].node);
     ASSERT_EQ(groups[1].parts.size(), 2U);
     EXPECT_EQ(groups[1].parts[0].instance, 2U);
-    EXPECT_EQ(groups[1].parts[0].group_from_object[3], glm::vec4(2, 0, 0, 1)); // below the node that turns
+    EXPECT_EQ(groups[1].parts[0].group_from_object[3], glm::vec4(2, 0, 0, 1)); // below the node that slides
 }
 
 TEST_F(DrawGeometryTest, FirstVerticesNumberEveryTriangleOnce) {

@@ -90,6 +90,16 @@ std::uint32_t SceneBuilder::add(scene::Mesh mesh, std::uint32_t material, const 
     return static_cast<std::uint32_t>(scene_.instances.size() - 1);
 }
 
+void SceneBuilder::slide(std::uint32_t node, const glm::vec3& from, const glm::vec3& to) {
+    scene_.nodes[node] = {};
+    scene_.nodes[node].is_animated = true;
+    scene_.channels.push_back({.node = node,
+                               .path = scene::AnimationPath::kTranslation,
+                               .times_s = {0, 1},
+                               .values = {glm::vec4(from, 0.0F), glm::vec4(to, 0.0F)}});
+    scene_.duration_s = 1.0;
+}
+
 void SceneBuilder::add_light(scene::Light light, const glm::mat4& world_from_node) {
     light.node = add_node(world_from_node);
     scene_.lights.push_back(std::move(light));

@@ -18,6 +18,8 @@ public:
     std::uint32_t add_node(const glm::mat4& world_from_node);
     /// Places `mesh` with a material; returns the instance.
     std::uint32_t add(scene::Mesh mesh, std::uint32_t material, const glm::mat4& world_from_object = glm::mat4(1.0F));
+    /// Within a second a node without parent moves from one place to another; it is not turned or scaled any more.
+    void slide(std::uint32_t node, const glm::vec3& from, const glm::vec3& to);
     void add_light(scene::Light light, const glm::mat4& world_from_node);
     scene::Environment& environment() { return scene_.environment; }
     scene::Scene& scene() { return scene_; }
