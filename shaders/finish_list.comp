@@ -8,7 +8,7 @@ layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { FinishListParams params; };
 
 void main() {
-    uint groups = (params.counters.at[params.list] + kLinearGroup - 1u) / kLinearGroup;
+    uint groups = (params.counters.at[params.list] + params.group_size - 1u) / params.group_size;
     params.counters.at[params.list + 1u] = min(groups, kLinearGroupsX);
     params.counters.at[params.list + 2u] = (groups + kLinearGroupsX - 1u) / kLinearGroupsX;
     params.counters.at[params.list + 3u] = 1u;

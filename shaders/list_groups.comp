@@ -1,12 +1,11 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Lists the groups of pixels that filters have to run on: those with a surface, and those with a pixel that touches one,
-// because filters look at their neighbours' values whatever these show. In one group, like scan_holes.comp.
+// because filters look at their neighbours' values whatever these show.
 #extension GL_GOOGLE_include_directive : require
-#include "lib/scan_runs.glsl"
-#include "shared/frame.h"
+#include "lib/linear_index.glsl"
 
-layout(local_size_x = kRuns) in;
+layout(local_size_x = kLinearGroup) in;
 layout(push_constant, scalar) uniform Push { ListGroupsParams params; };
 
 bool has_flag(int first_pixel, int last_pixel) {
@@ -31,23 +30,8 @@ bool is_wanted(uint group) {
 }
 
 void main() {
-    uint invocation = gl_LocalInvocationID.x;
-    Run run = run_of(invocation, params.group_count);
-    uint sum = 0u;
-    for (uint group = run.begin; group < run.end; ++group) {
-        sum += is_wanted(group) ? 1u : 0u;
-    }
-    uint next = kGroupListFirst + scan_runs(invocation, sum);
-    for (uint group = run.begin; group < run.end; ++group) {
-        if (is_wanted(group)) {
-            params.list.at[next++] = group;
-        }
-    }
-    if (invocation == 0u) {
-        uint count = sum_of_runs();
-        params.list.at[kGroupListCount] = count;
-        params.list.at[kGroupListDispatch] = min(count, kLinearGroupsX);
-        params.list.at[kGroupListDispatch + 1u] = (count + kLinearGroupsX - 1u) / kLinearGroupsX;
-        params.list.at[kGroupListDispatch + 2u] = 1u;
+    uint group = linear_index();
+    if (group < params.group_count && is_wanted(group)) {
+        params.list.at[kGroupListFirst + atomicAdd(params.list.at[kGroupListCount], 1u)] = group;
     }
 }

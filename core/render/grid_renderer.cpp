@@ -255,7 +255,8 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     shared::TraceListParams params = list_params(header);
     params.list = layer_pixels.address();
     recorder.stage("layers");
-    recorder.dispatch(finish_kernel, {}, shared::FinishListParams{counters.address(), shared::kCounterLayers},
+    recorder.dispatch(finish_kernel, {},
+                      shared::FinishListParams{counters.address(), shared::kCounterLayers, shared::kLinearGroup},
                       {1, 1, 1});
     recorder.barrier();
     recorder.dispatch_indirect(layers_kernel, {&scene.bindings(), &source_set}, params, counters,

@@ -9,10 +9,11 @@
 
 namespace fieldcast::render {
 
-static_assert(shared::kGroupListDispatch == 1);
+static_assert(shared::kGroupListDispatch == shared::kGroupListCount + 1); // finish_list.comp
 
 GroupList::GroupList(const gpu::Device& device)
-    : device_(device), kernel_(make_plain_kernel(device, KernelId::kListGroups, sizeof(shared::ListGroupsParams))) {}
+    : device_(device), list_groups_(make_plain_kernel(device, KernelId::kListGroups, sizeof(shared::ListGroupsParams))),
+      finish_(make_plain_kernel(device, KernelId::kFinishList, sizeof(shared::FinishListParams))) {}
 
 bool GroupList::resize(std::uint32_t group_count) {
     if (group_count == group_count_) {
@@ -34,11 +35,14 @@ void GroupList::list_all() {
 
 void GroupList::clear(gpu::Recorder& recorder) const {
     recorder.fill(flags_, 0);
+    recorder.fill(list_, 0, 0, shared::kGroupListFirst * sizeof(std::uint32_t));
 }
 
 void GroupList::record(gpu::Recorder& recorder, std::uint32_t width_px) const {
-    recorder.dispatch(kernel_, {}, shared::ListGroupsParams{flags_.address(), list_.address(), width_px, group_count_},
-                      {});
+    const shared::ListGroupsParams params{flags_.address(), list_.address(), width_px, group_count_};
+    recorder.dispatch(list_groups_, {}, params, linear_groups(group_count_));
+    recorder.barrier();
+    recorder.dispatch(finish_, {}, shared::FinishListParams{list_.address(), shared::kGroupListCount, 1}, {});
 }
 
 } // namespace fieldcast::render

@@ -18,7 +18,8 @@ public:
     void list_all();
 
     /// All flags 0; then kernels set those of groups with a surface, and `record` lists them, with `width_px` together
-    /// with those that touch them: groups of kLinearGroup pixels of pictures of that width. Visible after a barrier.
+    /// with those that touch them, in any order: groups of kLinearGroup pixels of pictures of that width. Visible after
+    /// a barrier.
     void clear(gpu::Recorder& recorder) const;
     void record(gpu::Recorder& recorder, std::uint32_t width_px) const;
 
@@ -29,7 +30,8 @@ public:
 
 private:
     const gpu::Device& device_;
-    gpu::Kernel kernel_;
+    gpu::Kernel list_groups_;
+    gpu::Kernel finish_;
     std::uint32_t group_count_ = 0;
     gpu::Buffer flags_;
     gpu::Buffer list_;

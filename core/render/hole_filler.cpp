@@ -113,7 +113,8 @@ void HoleFiller::trace_list(gpu::Recorder& recorder, const Targets& targets, sha
                             std::uint32_t list) {
     params.list = list;
     recorder.stage("holes");
-    recorder.dispatch(finish_, {}, shared::FinishListParams{targets.counters.address(), list}, {1, 1, 1});
+    recorder.dispatch(finish_, {},
+                      shared::FinishListParams{targets.counters.address(), list, shared::kLinearGroup}, {1, 1, 1});
     recorder.barrier();
     recorder.dispatch_indirect(trace_, {&scene_.bindings(), &targets.source_set}, params, targets.counters,
                                (list + 1) * 4);
@@ -169,7 +170,8 @@ void HoleFiller::fill(gpu::Recorder& recorder, const FrameHeader& header, const 
     trace_list(recorder, targets, params, shared::kCounterFirstHoles);
     if (!batch_.corners.empty()) {
         recorder.stage("cascade_holes");
-        recorder.dispatch(finish_, {}, shared::FinishListParams{params.counters, shared::kCounterInnerHoles},
+        recorder.dispatch(finish_, {},
+                          shared::FinishListParams{params.counters, shared::kCounterInnerHoles, shared::kLinearGroup},
                           {1, 1, 1});
         recorder.barrier();
         recorder.dispatch_indirect(cascade_, sets, params, targets.counters, (shared::kCounterInnerHoles + 1) * 4);

@@ -29,7 +29,8 @@ void Reflections::record(gpu::Recorder& recorder, shared::TraceListParams params
                          const gpu::BindingSet& source) {
     params.list = pixels_.address();
     recorder.stage("reflections");
-    recorder.dispatch(finish_, {}, shared::FinishListParams{counters.address(), shared::kCounterReflections},
+    recorder.dispatch(finish_, {},
+                      shared::FinishListParams{counters.address(), shared::kCounterReflections, shared::kLinearGroup},
                       {1, 1, 1});
     recorder.barrier();
     recorder.dispatch_indirect(reflect_, {&scene_.bindings(), &source}, params, counters,

@@ -32,7 +32,8 @@ const uint kGroupListCount = 0;
 const uint kGroupListDispatch = 1;
 const uint kGroupListFirst = 4;
 
-// list_groups.comp: groups whose flag is set, and if they are of kLinearGroup pixels those that touch one of them.
+// list_groups.comp: groups whose flag is set, and if they are of kLinearGroup pixels those that touch one of them, in any
+// order.
 struct ListGroupsParams {
     UintBuffer flags;
     UintBuffer list;  // out
@@ -369,6 +370,7 @@ struct ShadeViewsParams {
 struct FinishListParams {
     UintBuffer counters;
     uint list;                   // kCounter… of its length
+    uint group_size;             // elements per group
 };
 
 // composite_layers.comp: the pixels behind BLEND surfaces; reflect_views.comp: those of smooth surfaces. Read set 1:
