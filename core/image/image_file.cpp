@@ -72,8 +72,8 @@ std::unique_ptr<OIIO::ImageInput> open_in_memory(const ImageHeader& header, OIIO
     return input;
 }
 
-/// Encodes `pixels` (tightly packed, of the type and channels of `spec`) in memory.
-/// `pixels` are of `type`, which may be another than that of the file.
+/// Encodes `pixels` in memory: tightly packed, with the channels of `spec` and of `type`, which may be another than the
+/// file's.
 std::vector<std::byte> encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                               const void* pixels) {
     std::vector<unsigned char> encoded;

@@ -3,6 +3,7 @@
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
+#include "core/render/view_request.h"
 #include "shaders/shared/frame.h"
 
 namespace fieldcast::render {
@@ -16,7 +17,7 @@ SourceSurfaces::SourceSurfaces(const gpu::Device& device, const scene::GpuScene&
 void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
                             const gpu::Buffer& geometry) {
     const Camera widened = planes.camera();
-    const std::uint64_t padded = (static_cast<std::uint64_t>(planes.pixel_count()) + 3) / 4 * 4 * planes.source_count();
+    const std::uint64_t padded = std::uint64_t{view_stride(widened.width_px, widened.height_px)} * planes.source_count();
     if (visibility_.size_bytes() < padded * 8) {
         visibility_ = gpu::Buffer(device_, padded * 8);
         layers_ = gpu::Buffer(device_, scene_.has_blend() ? padded * 16 : 16);
