@@ -27,7 +27,7 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_report_command(app);
     fieldcast::bench::add_compare_command(app);
     app.footer(
-        "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/benchmarks.md says\n"
+        "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/measurements/metrics.md says\n"
         "what all the numbers mean.");
     CLI11_PARSE(app, argc, argv);
     return 0;

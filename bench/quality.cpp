@@ -74,7 +74,7 @@ scored frame with the one before (warped error). Where references of the frames 
 slices, refocused images. It makes the references of these views where they are missing, which takes as long as twelve
 frames of the reduced protocol: slow on a processor.
 
-docs/benchmarks.md says what each number means.)";
+docs/measurements/metrics.md says what each number means.)";
 
 void add_measures(CLI::App& command, QualityOptions& options) {
     command.add_flag("--scored-views", options.renders_scored_views_only,

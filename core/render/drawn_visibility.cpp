@@ -131,7 +131,7 @@ void DrawnVisibility::resize(const VisibilityBatch& batch) {
     }
 }
 
-// Of a view, rays take time for each pixel and drawing for each triangle (docs/benchmarks.md#visibility-of-views).
+// Of a view, rays take time for each pixel and drawing for each triangle (docs/measurements/frame_time.md#visibility-of-views).
 bool DrawnVisibility::is_fast(const VisibilityBatch& batch) const {
     const Camera& camera = batch.cameras.front();
     const glm::mat4 clip = clip_from_world(camera, near_m_);

@@ -7,7 +7,7 @@
 namespace fieldcast::render {
 
 /// Makes one plane of both kinds of illumination: light that, taken for both, makes the source look the same. Other
-/// views differ by what changes between their pixels and the source's: docs/decisions/one-light-plane.md. Not
+/// views differ by what changes between their pixels and the source's: docs/decisions/0013-one-light-plane.md. Not
 /// thread-safe.
 class LightMerger {
 public:

@@ -21,7 +21,7 @@ Traversal choose_traversal(const gpu::Device& device, const std::string& wish);
 /// bits.
 enum class VisibilityMethod : std::uint8_t { kRays, kRaster, kFaster };
 
-/// Reads "rays" | "raster" | "auto": what is faster on a CPU, rays elsewhere (docs/decisions/views-are-drawn.md). Throws
+/// Reads "rays" | "raster" | "auto": what is faster on a CPU, rays elsewhere (docs/decisions/0015-views-are-drawn.md). Throws
 /// UserError if what was asked for cannot be had.
 VisibilityMethod choose_visibility(const gpu::Device& device, const std::string& wish);
 

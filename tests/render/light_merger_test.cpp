@@ -73,7 +73,7 @@ TEST_F(LightMergerTest, CoarseNormalsDiscardAboutTheSamePixels) {
     const auto normal = std::ranges::find(frame.planes, PlaneSemantic::kNormal, &Plane::semantic);
     *normal = coarse_normals(*normal);
     show(s, frame);
-    // 0.3 points of the pixels is what lossy planes may cost (docs/benchmarks.md).
+    // 0.3 points of the pixels is what lossy planes may cost (docs/measurements/codecs.md).
     EXPECT_NEAR(discards(), expected, 0.003 * 4 * kWidth * kHeight);
     SourcePlanes planes(device());
     ASSERT_TRUE(planes.upload(frame).has_value());

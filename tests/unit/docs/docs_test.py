@@ -16,6 +16,8 @@ FLAG_SOURCES = {
 FIRST_DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md", "docs/lightfield.md",
                    "docs/protocol.md", "docs/operations.md", "docs/benchmarks.md", "docs/known_artefacts.md"]
 
+DECISION_SECTIONS = ["Context", "Decision", "Consequences", "What would change it"]
+
 
 def read(path):
     return pathlib.Path(path).read_text(encoding="utf-8")
@@ -43,6 +45,20 @@ class Documents(unittest.TestCase):
                    if not (path.parent / target).resolve().is_relative_to(root)]
         self.assertEqual([], outside)
 
+    def test_anchors_exist(self):
+        broken = [f"{path}: {target}#{anchor}" for path in documents()
+                  for target, anchor in promises.anchored_links(read(path))
+                  if anchor not in promises.anchors(read(path.parent / target if target else path))]
+        self.assertEqual([], broken)
+
+    def test_decisions_have_one_form(self):
+        pages = sorted(pathlib.Path("docs/decisions").glob("[!R]*.md"))
+        self.assertEqual([f"{number:04d}" for number in range(1, len(pages) + 1)], [page.name[:4] for page in pages])
+        for page in pages:
+            with self.subTest(page.name):
+                self.assertTrue(read(page).startswith(f"# {page.name[:4]} "))
+                self.assertEqual(DECISION_SECTIONS, promises.section_names(read(page)))
+
     def test_commands_are_in_the_help(self):
         known = promises.help_commands(read("fieldcast"))
         self.assertIn("demo", known)
@@ -68,6 +84,12 @@ class Promises(unittest.TestCase):
         text = '[a](docs/a.md#part) ![b](b.png "title") [c](https://example.org) [d](#here) <img src="d.png">'
         self.assertEqual(["docs/a.md", "b.png", "d.png"], promises.links(text))
         self.assertEqual([], promises.links("`view[i](x)`\n```\n[a](b)\n```\n"))
+
+    def test_anchors(self):
+        self.assertEqual([("a.md", "part"), ("", "here")], promises.anchored_links("[a](a.md#part) [b](#here) [c](d.md)"))
+        page = "# One, two\n## `code` of [it](x.md)\n```\n# no heading\n```\n"
+        self.assertEqual({"one-two", "code-of-it"}, promises.anchors(page))
+        self.assertEqual(["B"], promises.section_names("# A\n## B\n### C\n"))
 
     def test_commands(self):
         self.assertEqual({"demo", "test"}, promises.script_commands("`./fieldcast demo`, ./fieldcast test --quick"))

@@ -10,6 +10,7 @@ IMAGE_TAG = re.compile(r"<(?:img|a)\b[^>]*\b(?:src|href)=\"([^\"]+)\"", re.IGNOR
 SCHEME = re.compile(r"^(?:[a-z][a-z0-9+.-]*:|//)", re.IGNORECASE)
 FENCE = re.compile(r"^(```|~~~).*?^\1[ \t]*$", re.MULTILINE | re.DOTALL)
 CODE_SPAN = re.compile(r"`[^`\n]*`")
+HEADING = re.compile(r"^#{1,6} (.+?)\s*$", re.MULTILINE)
 SCRIPT_COMMAND = re.compile(r"\./fieldcast[ \t]+([a-z][a-z-]*)")
 HELP_COMMAND = re.compile(r"^  ([a-z][a-z-]*)\b", re.MULTILINE)
 PROGRAM_CALL = re.compile(r"fieldcast-(server|client|bench|load)\b([^`\n|]*)")
@@ -25,6 +26,25 @@ def links(text):
     targets = [target.split("#")[0] for target in LINK.findall(prose) + IMAGE_TAG.findall(prose)
                if not SCHEME.match(target)]
     return [target for target in targets if target]
+
+
+def anchored_links(text):
+    """(target, anchor) of links with an #anchor, outside of code; the target of a link within its page is empty."""
+    prose = CODE_SPAN.sub("", FENCE.sub("", text))
+    pairs = [target.split("#", 1) for target in LINK.findall(prose) if "#" in target and not SCHEME.match(target)]
+    return [(target, anchor) for target, anchor in pairs]
+
+
+def anchors(text):
+    """The anchors of a page's headings: lower case, letters, digits, hyphens and underscores, blanks as hyphens."""
+    headings = HEADING.findall(FENCE.sub("", text))
+    plain = [re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower() for heading in headings]
+    return {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in plain}
+
+
+def section_names(text):
+    """The headings of the second level, in order."""
+    return re.findall(r"^## (.+?)\s*$", FENCE.sub("", text), re.MULTILINE)
 
 
 def script_commands(text):
