@@ -149,14 +149,7 @@ std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Wish
     return std::nullopt;
 }
 
-/// Room for a plane, and for the layers that frames may stack below the illumination.
-struct PlaneRoom {
-    std::uint32_t width_px = 0;
-    std::uint32_t height_px = 0;
-    std::uint64_t bytes = 0;
-};
-
-std::optional<PlaneRoom> plane_room(const v1::PlaneHeader& plane) {
+std::optional<PlaneBound> plane_bound(const v1::PlaneHeader& plane) {
     const auto semantic = wire::from_proto(plane.semantic());
     const auto format = wire::from_proto(plane.format());
     const bool has_size = plane.width_px() > 0 && plane.width_px() <= kMaxPlaneSide && plane.height_px() > 0 &&
@@ -164,26 +157,37 @@ std::optional<PlaneRoom> plane_room(const v1::PlaneHeader& plane) {
     if (!semantic || !format || !has_size) {
         return std::nullopt;
     }
-    const std::uint32_t height_px = plane.height_px() * (is_illumination(*semantic) ? 1 + kMaxLayers : 1);
-    return PlaneRoom{plane.width_px(), height_px, plane_bytes(*format, plane.width_px(), height_px)};
+    return PlaneBound{*semantic, *format, plane.width_px(), plane.height_px()};
+}
+
+/// Of a source frame; none of views.
+Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, Mode mode) {
+    std::vector<PlaneBound> bounds;
+    if (mode == Mode::kViews) {
+        return bounds;
+    }
+    for (const v1::PlaneHeader& plane : message.planes()) {
+        const std::optional<PlaneBound> bound = plane_bound(plane);
+        if (!bound) {
+            return decode_error("Configured: a plane of unknown meaning or format, or a size outside 1 … 16384");
+        }
+        bounds.push_back(*bound);
+    }
+    return bounds;
 }
 
 /// Sizes in Configured are upper bounds; the assembler checks frames against what follows from them.
-Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wire::ViewSet& set, Mode mode) {
+Decoded<wire::FrameLimits> frame_limits(const std::vector<PlaneBound>& planes, const wire::ViewSet& set, Mode mode) {
     wire::FrameLimits limits;
     limits.max_width_px = set.width_px;
     limits.max_height_px = set.height_px;
     limits.max_frame_bytes = plane_bytes(PlaneFormat::kRgb8, set.width_px, set.height_px) * set.grid.view_count();
     if (mode != Mode::kViews) {
         limits.max_frame_bytes = 0;
-        for (const v1::PlaneHeader& plane : message.planes()) {
-            const std::optional<PlaneRoom> room = plane_room(plane);
-            if (!room) {
-                return decode_error("Configured: a plane of unknown meaning or format, or a size outside 1 … 16384");
-            }
-            limits.max_width_px = std::max(limits.max_width_px, room->width_px);
-            limits.max_height_px = std::max(limits.max_height_px, room->height_px);
-            limits.max_frame_bytes += room->bytes;
+        for (const PlaneBound& plane : planes) {
+            limits.max_width_px = std::max(limits.max_width_px, plane.width_px);
+            limits.max_height_px = std::max(limits.max_height_px, plane.height_px);
+            limits.max_frame_bytes += plane_bytes(plane.format, plane.width_px, plane.height_px);
         }
     }
     if (limits.max_frame_bytes > kMaxFrameBytes) {
@@ -191,6 +195,17 @@ Decoded<wire::FrameLimits> frame_limits(const v1::Configured& message, const wir
                             " MiB, at most 1024 MiB");
     }
     return limits;
+}
+
+std::optional<std::string> planes_problem(const std::vector<Plane>& planes, const std::vector<PlaneBound>& bounds) {
+    const auto is_within = [](const Plane& plane, const PlaneBound& bound) {
+        return plane.semantic == bound.semantic && plane.format == bound.format && plane.width_px <= bound.width_px &&
+               plane.height_px <= bound.height_px;
+    };
+    if (!std::ranges::equal(planes, bounds, is_within)) {
+        return "frame with other or larger planes than Configured announced";
+    }
+    return std::nullopt;
 }
 
 std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set, Mode mode) {
@@ -284,7 +299,12 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& as
     if (const auto problem = codec_problem(message, wish)) {
         return decode_error(*problem);
     }
-    const Decoded<wire::FrameLimits> limits = frame_limits(message, *set, wish.mode);
+    Decoded<std::vector<PlaneBound>> planes = plane_bounds(message, wish.mode);
+    if (!planes) {
+        return tl::unexpected(planes.error());
+    }
+    agreement.planes = std::move(*planes);
+    const Decoded<wire::FrameLimits> limits = frame_limits(agreement.planes, *set, wish.mode);
     if (!limits) {
         return tl::unexpected(limits.error());
     }
@@ -301,8 +321,12 @@ std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const
     if ((views != nullptr) != (agreement.mode == Mode::kViews)) {
         return "frame of another delivery mode than agreed";
     }
-    return views != nullptr ? views_problem(*views, agreement.view_set)
-                            : source_problem(std::get<SourceFrame>(frame.content), agreement.view_set, agreement.mode);
+    if (views != nullptr) {
+        return views_problem(*views, agreement.view_set);
+    }
+    const auto& source = std::get<SourceFrame>(frame.content);
+    const auto problem = planes_problem(source.planes, agreement.planes);
+    return problem ? problem : source_problem(source, agreement.view_set, agreement.mode);
 }
 
 } // namespace fieldcast::client::net

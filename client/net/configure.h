@@ -70,6 +70,14 @@ struct Adapted {
     std::string change;                           ///< for people; printable
 };
 
+/// A plane that every frame has, and the most that it may measure.
+struct PlaneBound {
+    PlaneSemantic semantic = PlaneSemantic::kColour;
+    PlaneFormat format = PlaneFormat::kRgb8;
+    std::uint32_t width_px = 0;
+    std::uint32_t height_px = 0;
+};
+
 /// What the server grants.
 struct Agreement {
     std::uint32_t epoch = 0;
@@ -78,6 +86,7 @@ struct Agreement {
     Mode mode = Mode::kViews;
     wire::ViewSet view_set;
     wire::FrameLimits limits;       ///< for every frame of this epoch
+    std::vector<PlaneBound> planes; ///< of source frames, in their order; empty in mode kViews
     float frames_per_second = 0.0F; ///< that the server means to send at most; 0: it does not say
     Wish wish;                      ///< that it answers
     std::optional<Adapted> adapted{}; ///< set: a change within `wish.adaptation`, not an answer

@@ -7,7 +7,7 @@ namespace fieldcast::session {
 
 namespace {
 
-/// Most that a plane of the channel's frames may measure; layers come on top.
+/// Most that a plane of the channel's frames may measure, the layers of illumination included.
 glm::uvec2 largest_plane(PlaneSemantic semantic, const feed::ChannelInfo& channel) {
     if (is_residual(semantic)) {
         const glm::uvec2 tiles = residual_tiles(channel.source_width_px, channel.source_height_px);
@@ -15,8 +15,9 @@ glm::uvec2 largest_plane(PlaneSemantic semantic, const feed::ChannelInfo& channe
         return {kResidualColumns * kResidualTile, residual_height(std::min(count, max_residual_tiles()))};
     }
     const GuardBand& band = channel.guard_band;
-    return {channel.source_width_px + band.left_px + band.right_px,
-            (channel.source_height_px + band.top_px + band.bottom_px) * channel.source_count};
+    const std::uint32_t pages = channel.source_count * (is_illumination(semantic) ? 1 + kMaxLayers : 1);
+    const std::uint32_t height_px = channel.source_height_px + band.top_px + band.bottom_px;
+    return {channel.source_width_px + band.left_px + band.right_px, std::min(height_px * pages, kMaxPlaneSide)};
 }
 
 void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const feed::ChannelInfo& channel) {

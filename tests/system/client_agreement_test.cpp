@@ -203,5 +203,39 @@ TEST_F(SessionTest, EndsWhenAServerAdaptsBeyondTheBounds) {
     EXPECT_THAT(ended->error.what(), HasSubstr("another grid"));
 }
 
+/// A frame of illumination with two layers, 64 pixels wide.
+wire::ReceivedFrame light_frame(std::uint32_t height_px) {
+    SourceFrame source;
+    source.header.source = make_camera(glm::mat4(1.0F), 0.8F, 64, 36);
+    source.header.layer_count = kMaxLayers;
+    for (const PlaneSemantic semantic : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {
+        source.planes.push_back({semantic, PlaneFormat::kR11G11B10F, 64, height_px, {}});
+    }
+    wire::ReceivedFrame frame;
+    frame.content = std::move(source);
+    return frame;
+}
+
+TEST(FrameProblem, PlanesAreThoseThatWereAnnounced) {
+    Wish wish = small_wish();
+    wish.mode = Mode::kScene;
+    v1::Configured configured = configured_message(to_configure(wish, 1)).configured();
+    for (const v1::PlaneSemantic semantic : {v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR}) {
+        v1::PlaneHeader& plane = *configured.add_planes();
+        plane.set_semantic(semantic);
+        plane.set_format(v1::PLANE_FORMAT_R11G11B10F);
+        plane.set_codec(v1::CODEC_ZSTD_FILTERED);
+        plane.set_width_px(64);
+        plane.set_height_px(108);
+    }
+    const auto agreement = from_configured(configured, wish);
+    ASSERT_TRUE(agreement) << agreement.error().message;
+    EXPECT_EQ(agreement->limits.max_frame_bytes, 2U * 4U * 64U * 108U) << "what was announced, and no more";
+    EXPECT_EQ(frame_problem(light_frame(108), *agreement), std::nullopt);
+    EXPECT_THAT(frame_problem(light_frame(109), *agreement).value_or(""), HasSubstr("larger planes"));
+    configured.mutable_planes()->SwapElements(0, 1);
+    EXPECT_THAT(frame_problem(light_frame(108), *from_configured(configured, wish)).value_or(""), HasSubstr("other"));
+}
+
 } // namespace
 } // namespace fieldcast::test

@@ -289,5 +289,32 @@ TEST_F(Negotiate, RefusesRatesAndChunkSizesByField) {
     EXPECT_EQ(refusal().field, "chunk_bytes");
 }
 
+std::vector<std::uint32_t> announced_heights(const Configuration& configuration) {
+    std::vector<std::uint32_t> heights;
+    const v1::Configured message = to_message(configuration, 1, 1, 2);
+    for (const v1::PlaneHeader& plane : message.planes()) {
+        heights.push_back(plane.height_px());
+    }
+    return heights;
+}
+
+TEST_F(Negotiate, AnnouncesPlanesWithSourcesAndLayers) {
+    feed::ChannelInfo info = test::synthetic_info("first");
+    info.guard_band = {.left_px = 3, .right_px = 4, .top_px = 5, .bottom_px = 6};
+    channels_[0] = std::make_shared<feed::Feed>(info);
+    wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
+    wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
+    EXPECT_EQ(announced_heights(*ask()), (std::vector{141U, 141U, 47U, 47U, 47U, 47U}));
+    EXPECT_EQ(to_message(*ask(), 1, 1, 2).planes(0).width_px(), 71U);
+    wanted_.set_planes(v1::PLANE_SET_TOTAL_LIGHT);
+    EXPECT_EQ(announced_heights(*ask()), std::vector{141U});
+    info.source_count = 2;
+    channels_[0] = std::make_shared<feed::Feed>(info);
+    EXPECT_EQ(announced_heights(*ask()), std::vector{282U});
+    info.source_height_px = 16000; // its planes cannot have layers, or nobody could take them
+    channels_[0] = std::make_shared<feed::Feed>(info);
+    EXPECT_EQ(announced_heights(*ask()), std::vector{kMaxPlaneSide});
+}
+
 } // namespace
 } // namespace fieldcast::session

@@ -35,6 +35,7 @@ target_link_libraries(make_golden_recording PRIVATE server_synthetic fieldcast_s
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_protocol_page_test.cpp
     DEPENDS fieldcast_server_ops)
 find_package(OpenSSL REQUIRED)
 add_library(certificate_authority STATIC ${CMAKE_CURRENT_LIST_DIR}/certificate_authority.cpp)
