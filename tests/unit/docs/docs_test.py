@@ -14,7 +14,7 @@ FLAG_SOURCES = {
     "bench": sorted(p.as_posix() for p in pathlib.Path("bench").glob("*.cpp")),
 }
 FIRST_DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md", "docs/lightfield.md",
-                   "docs/protocol.md", "docs/operations.md", "docs/benchmarks.md", "docs/known_artefacts.md"]
+                   "docs/protocol.md", "docs/operations.md", "docs/security.md", "docs/benchmarks.md", "docs/known_artefacts.md"]
 
 DECISION_SECTIONS = ["Context", "Decision", "Consequences", "What would change it"]
 
@@ -79,6 +79,13 @@ class Documents(unittest.TestCase):
         self.assertNotEqual(set(), promises.program_flags(read("README.md")), "README shows how to call the programs")
 
 
+    def test_every_attack_is_in_the_table(self):
+        defined, _ = promises.scenarios("".join(map(read, sorted(pathlib.Path("tests/hostile/scenarios").glob("*.py")))))
+        _, listed = promises.scenarios(read("docs/security.md"))
+        self.assertEqual({f"`{name}`" for name in defined}, listed)
+        self.assertIn("garbage", defined)
+
+
 class Promises(unittest.TestCase):
     def test_links(self):
         text = '[a](docs/a.md#part) ![b](b.png "title") [c](https://example.org) [d](#here) <img src="d.png">'
@@ -96,6 +103,11 @@ class Promises(unittest.TestCase):
         script = "print_help() {\n    cat <<'END'\n  setup [--check]  text\n           more text\n  demo   x\n\nExamples:\n" \
                  "  ./fieldcast gone\nEND\n}\n"
         self.assertEqual({"setup", "demo"}, promises.help_commands(script))
+
+    def test_scenarios(self):
+        self.assertEqual({"a-b"}, promises.scenarios('    Scenario("a-b", 1, "x", f),\n')[0])
+        table = "| threat | bound | scenario |\n|---|---|---|\n| x `y` | z | `a`, `b-c` |\n| no | `d` |\n"
+        self.assertEqual({"`a`", "`b-c`"}, promises.scenarios(table)[1])
 
     def test_tables(self):
         self.assertEqual({"--a", "--b-c"}, promises.table_flags("| `--a FILE` | x |\n`--d`\n| `--b-c` | `--e` |\n"))

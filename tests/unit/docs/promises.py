@@ -17,6 +17,8 @@ PROGRAM_CALL = re.compile(r"fieldcast-(server|client|bench|load)\b([^`\n|]*)")
 FLAG = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*)")
 DEFINED_FLAG = re.compile(r"\"!?(--[a-z][a-z0-9-]*)\"")
 TABLE_FLAG = re.compile(r"^\| `(--[a-z][a-z0-9-]*)", re.MULTILINE)
+SCENARIO = re.compile(r"\bScenario\(\"([a-z0-9-]+)\"")
+SCENARIO_ROW = re.compile(r"^\|(?:[^|\n]*\|){2}([^|\n]*)\|[ \t]*$", re.MULTILINE)
 GIVEN_FLAGS = {"--help"}  # the argument parser's own
 
 
@@ -56,6 +58,11 @@ def help_commands(script):
     found = re.search(r"^print_help\(\) \{\n(.*?)^END$", script, re.MULTILINE | re.DOTALL)
     body = found.group(1).partition("\nExamples:")[0] if found else ""
     return set(HELP_COMMAND.findall(body))
+
+
+def scenarios(text):
+    """Names of attacks: of sources those that are defined, of a document those in the third column of a table."""
+    return set(SCENARIO.findall(text)), {name for row in SCENARIO_ROW.findall(text) for name in CODE_SPAN.findall(row)}
 
 
 def program_flags(text):
