@@ -4,13 +4,13 @@
 #include "core/base/stop_signals.h"
 #include "server/channel/channel_list.h"
 #include "server/channel/offline_recording.h"
-#include "server/metrics/http_endpoint.h"
 #include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
 #include "server/ops/port_file.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
 #include "server/session/frame_timings.h"
+#include "server/web/endpoint.h"
 
 #include <algorithm>
 #include <array>
@@ -29,11 +29,25 @@ constexpr int kInterrupted = 130;
 constexpr std::chrono::milliseconds kPollInterval{100};
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
 
+constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8"; // of metrics::Page
+
 /// What the process says about itself, whatever it serves.
 void collect_process(metrics::Page& page) {
     page.add_gauge({"fieldcast_build_info", "1; the version stands in the label."}, {{"version", FIELDCAST_VERSION}},
                    1.0);
     metrics::add_process_metrics(page);
+}
+
+/// What the address of the metrics answers.
+std::vector<web::Route> metrics_routes(metrics::Registry& registry) {
+    const auto page = [&registry](const web::Request&) {
+        return web::Answer{.content_type = kMetricsType, .body = registry.page().text()};
+    };
+    const auto index = [](const web::Request&) {
+        return web::Answer{.body = "The metrics of this server are at /metrics.\n"};
+    };
+    return {{.path = "/metrics", .role = access::Role::kAdmin, .get = page},
+            {.path = "/", .role = access::Role::kAdmin, .get = index}};
 }
 
 /// /metrics, if it was asked for, and its port file.
@@ -44,7 +58,9 @@ public:
         if (!config.metrics_listen) {
             return;
         }
-        endpoint_.emplace(*config.metrics_listen, config.security, gate, [&] { return registry.page().text(); });
+        const web::Listening listening{
+            .address = *config.metrics_listen, .flag = "--metrics-listen", .security = config.security};
+        endpoint_.emplace(listening, gate, metrics_routes(registry));
         log::info("metrics", {{"listen", to_text({.host = config.metrics_listen->host, .port = endpoint_->port()})}});
         if (config.metrics_port_file) {
             port_file_.emplace(*config.metrics_port_file, endpoint_->port());
@@ -53,7 +69,7 @@ public:
 
 private:
     metrics::Collector collector_;
-    std::optional<metrics::HttpEndpoint> endpoint_;
+    std::optional<web::Endpoint> endpoint_;
     std::optional<ops::PortFile> port_file_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "server/access/tls_context.h"
 
 #include <condition_variable>
 #include <mutex>
@@ -38,12 +39,7 @@ void AccessWatch::take_note(const CertificateFacts& facts) {
 }
 
 std::vector<FileStamp> AccessWatch::certificate_stamps() const {
-    const CertificateFiles& files = *security_.certificates;
-    std::vector<FileStamp> stamps{stamp_of(files.certificate), stamp_of(files.key)};
-    if (files.client_ca) {
-        stamps.push_back(stamp_of(*files.client_ca));
-    }
-    return stamps;
+    return stamps_of(*security_.certificates);
 }
 
 void AccessWatch::watch(const std::stop_token& stop) {

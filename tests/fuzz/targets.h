@@ -26,7 +26,7 @@ void config(Bytes input);         ///< server/ops/config_file
 void environment(Bytes input);    ///< core/scene/environment: .hdr and .exr
 void frame(Bytes input);          ///< core/wire: chunks of frames, in any order
 void gltf(Bytes input);           ///< core/scene/gltf_loader
-void http_request(Bytes input);   ///< server/metrics/http_request
+void http_request(Bytes input);   ///< server/web/request_reader
 void image(Bytes input);          ///< core/image/image_file: PNG, JPEG, WebP
 void metrics_page(Bytes input);   ///< client/load/metrics_page: what a server tells about itself
 void recording(Bytes input);      ///< server/recording: files that a server is told to replay

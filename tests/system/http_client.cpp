@@ -36,9 +36,44 @@ HttpCaller::~HttpCaller() {
     ::close(descriptor_);
 }
 
-std::string http_get(int port, const std::string& request, const std::string& address) {
-    const HttpCaller caller(address, port);
-    ::send(caller.descriptor(), request.data(), request.size(), MSG_NOSIGNAL);
+struct HttpsCaller::Tls {
+    std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context{SSL_CTX_new(TLS_client_method()), SSL_CTX_free};
+    std::unique_ptr<SSL, void (*)(SSL*)> connection{nullptr, SSL_free};
+};
+
+HttpsCaller::HttpsCaller(const std::string& address, int port, const std::string& authority)
+    : caller_(address, port), tls_(std::make_unique<Tls>()) {
+    BIO* const pem = BIO_new_mem_buf(authority.data(), static_cast<int>(authority.size()));
+    X509* const root = PEM_read_bio_X509(pem, nullptr, nullptr, nullptr);
+    X509_STORE_add_cert(SSL_CTX_get_cert_store(tls_->context.get()), root);
+    X509_free(root);
+    BIO_free(pem);
+    SSL_CTX_set_verify(tls_->context.get(), SSL_VERIFY_PEER, nullptr);
+    tls_->connection.reset(SSL_new(tls_->context.get()));
+    SSL* const connection = tls_->connection.get();
+    X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(connection), address.c_str());
+    SSL_set_fd(connection, caller_.descriptor());
+    is_trusted_ = SSL_connect(connection) == 1;
+}
+
+HttpsCaller::~HttpsCaller() = default;
+
+void HttpsCaller::send(const std::string& text) {
+    std::size_t count = 0;
+    SSL_write_ex(tls_->connection.get(), text.data(), text.size(), &count);
+}
+
+std::string HttpsCaller::rest() {
+    std::string answer;
+    std::array<char, 4096> buffer{};
+    std::size_t count = 0;
+    while (SSL_read_ex(tls_->connection.get(), buffer.data(), buffer.size(), &count) == 1) {
+        answer.append(buffer.data(), count);
+    }
+    return answer;
+}
+
+std::string rest_of(const HttpCaller& caller) {
     std::string answer;
     std::array<char, 4096> buffer{};
     for (ssize_t count = 1; count > 0;) {
@@ -48,29 +83,19 @@ std::string http_get(int port, const std::string& request, const std::string& ad
     return answer;
 }
 
-std::string https_get(int port, const std::string& request, const std::string& authority, const std::string& address) {
+std::string http_get(int port, const std::string& request, const std::string& address) {
     const HttpCaller caller(address, port);
-    const std::unique_ptr<SSL_CTX, void (*)(SSL_CTX*)> context(SSL_CTX_new(TLS_client_method()), SSL_CTX_free);
-    BIO* const pem = BIO_new_mem_buf(authority.data(), static_cast<int>(authority.size()));
-    X509* const root = PEM_read_bio_X509(pem, nullptr, nullptr, nullptr);
-    X509_STORE_add_cert(SSL_CTX_get_cert_store(context.get()), root);
-    X509_free(root);
-    BIO_free(pem);
-    SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
-    const std::unique_ptr<SSL, void (*)(SSL*)> connection(SSL_new(context.get()), SSL_free);
-    X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(connection.get()), address.c_str());
-    SSL_set_fd(connection.get(), caller.descriptor());
-    if (SSL_connect(connection.get()) != 1) {
+    ::send(caller.descriptor(), request.data(), request.size(), MSG_NOSIGNAL);
+    return rest_of(caller);
+}
+
+std::string https_get(int port, const std::string& request, const std::string& authority, const std::string& address) {
+    HttpsCaller caller(address, port, authority);
+    if (!caller.is_trusted()) {
         return "";
     }
-    std::size_t count = 0;
-    SSL_write_ex(connection.get(), request.data(), request.size(), &count);
-    std::string answer;
-    std::array<char, 4096> buffer{};
-    while (SSL_read_ex(connection.get(), buffer.data(), buffer.size(), &count) == 1) {
-        answer.append(buffer.data(), count);
-    }
-    return answer;
+    caller.send(request);
+    return caller.rest();
 }
 
 } // namespace fieldcast::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 
 namespace fieldcast::test {
@@ -19,6 +20,32 @@ public:
 private:
     int descriptor_;
 };
+
+/// A connection over TLS that has shaken hands and not said anything yet.
+class HttpsCaller {
+public:
+    /// `authority`: PEM. Throws std::runtime_error if nobody answers.
+    HttpsCaller(const std::string& address, int port, const std::string& authority);
+    ~HttpsCaller();
+    HttpsCaller(const HttpsCaller&) = delete;
+    HttpsCaller& operator=(const HttpsCaller&) = delete;
+
+    /// False if the server's certificate is not signed by the authority, or names another address.
+    bool is_trusted() const { return is_trusted_; }
+
+    void send(const std::string& text);
+    std::string rest(); ///< everything that comes until the end
+    int descriptor() const { return caller_.descriptor(); }
+
+private:
+    struct Tls;
+    HttpCaller caller_;
+    std::unique_ptr<Tls> tls_;
+    bool is_trusted_;
+};
+
+/// What comes until the other side closes.
+std::string rest_of(const HttpCaller& caller);
 
 /// Everything that comes back for `request`, given as it is.
 std::string http_get(int port, const std::string& request, const std::string& address = "127.0.0.1");

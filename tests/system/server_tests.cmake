@@ -49,7 +49,12 @@ target_include_directories(http_client PUBLIC ${PROJECT_SOURCE_DIR}/tests/system
 target_link_libraries(http_client PRIVATE OpenSSL::SSL OpenSSL::Crypto fieldcast_warnings)
 fieldcast_test(server_metrics_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_metrics_test.cpp
-    DEPENDS certificate_authority http_client fieldcast_server_metrics)
+    DEPENDS fieldcast_server_metrics)
+fieldcast_test(server_web_test LABELS quick tsan
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_request_reader_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_slow_callers_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_web_test.cpp
+    DEPENDS certificate_authority http_client fieldcast_server_web)
 fieldcast_test(server_channel_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_clock_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_encoder_test.cpp

@@ -35,6 +35,7 @@ LIBRARIES = {
     "nlohmann/": ("core/scene", "bench", "server/ops", "client"),
     "embree": ("core/scene", "bench"),
     "meshoptimizer": ("core/scene",),
+    "boost/": ("server/web",),
     "openssl/": ("core/scene", "server/access"),
     "toml": ("core/base",),
     "spdlog/": ("core/base",),

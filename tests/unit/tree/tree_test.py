@@ -78,6 +78,8 @@ class Rules(unittest.TestCase):
         self.assertTrue(self.includes("server/session/mailbox.cpp", "CLI/CLI.hpp"))
         self.assertEqual([], self.includes("client/net/session.cpp", "grpcpp/grpcpp.h"))
         self.assertTrue(self.includes("core/wire/chunks.cpp", "grpcpp/grpcpp.h"))
+        self.assertEqual([], self.includes("server/web/endpoint.cpp", "boost/asio/write.hpp"))
+        self.assertTrue(self.includes("server/metrics/page.cpp", "boost/asio/write.hpp"))
         self.assertEqual([], self.includes("core/wire/chunks.cpp", "fieldcast/v1/frame.pb.h"))
         self.assertEqual(1, len(self.includes("core/render/a.cpp", "OpenImageIO/imageio.h")))
 
