@@ -10,7 +10,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKIPPED = 77  # ctest shows this exit code as skipped
 NEEDED = ("h2", "hpack", "google.protobuf")
-DEBIAN = pathlib.Path("/usr/bin/python3")  # which sees python3-h2 and python3-protobuf
+DEBIAN = pathlib.Path("/usr/bin/python3")  # which sees Debian's packages
 
 
 def has_all():
@@ -28,7 +28,7 @@ def run_where_they_are():
     if not os.environ.get("FIELDCAST_TRIED") and DEBIAN.exists() and subprocess.run(
             check, capture_output=True, check=False).returncode == 0:
         os.execve(DEBIAN, [str(DEBIAN), "-B", *sys.argv], {**os.environ, "FIELDCAST_TRIED": "1"})
-    print("skipped: python3-h2 and python3-protobuf are not installed (`./fieldcast setup` installs them)")
+    print(f"skipped: no Python has {', '.join(NEEDED)} (`./fieldcast setup` installs them)")
     sys.exit(SKIPPED)
 
 
