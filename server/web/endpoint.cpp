@@ -161,7 +161,9 @@ void Exchange::read() {
 
 void Exchange::answer(const ReadRequest& request) {
     service_.connections.move_to(id_, Stage::kAnswering);
+    service_.spares.release(); // pages open files
     const Answer answer = request ? respond(*request, service_.routes, service_.gate) : request.error();
+    service_.spares.refill();
     text_ = text_of(answer, request && request->method == "HEAD");
     forget_unsent(true);
     expire_in(service_.limits.exchange);
@@ -264,7 +266,7 @@ private:
     void run(const std::stop_token& stop);
     void await_caller();
     Error accept(tcp::socket& caller);
-    bool make_room();
+    bool cut_first();
     void pause(const Error& error);
     void welcome(tcp::socket socket);
     void cut(ConnectionTable::Id id);
@@ -315,7 +317,7 @@ void Endpoint::Impl::await_caller() {
     is_waiting_ = true;
 }
 
-/// If descriptors have run out, the endpoint gives up what it has itself.
+/// If descriptors have run out, the endpoint uses its reserve, and cuts callers until it has that back.
 Error Endpoint::Impl::accept(tcp::socket& caller) {
     Error error;
     bool has_more_room = true;
@@ -323,16 +325,16 @@ Error Endpoint::Impl::accept(tcp::socket& caller) {
         acceptor_.accept(caller, error);
         const bool lacks_room =
             error == asio::error::no_descriptors || error == boost::system::errc::too_many_files_open_in_system;
-        has_more_room = lacks_room && make_room();
+        has_more_room = lacks_room && (service_.spares.release() || cut_first());
+    }
+    service_.spares.refill();
+    while (!service_.spares.is_full() && cut_first()) {
     }
     return error;
 }
 
-/// False if there is nothing left to give up.
-bool Endpoint::Impl::make_room() {
-    if (service_.spares.release()) {
-        return true;
-    }
+/// False if there is nobody to cut.
+bool Endpoint::Impl::cut_first() {
     const auto first = service_.connections.first_to_go();
     if (first) {
         cut(*first);

@@ -15,6 +15,7 @@ public:
 
     bool release(); ///< gives all back; false if there were none
     void refill();  ///< as far as the process may open some
+    bool is_full() const { return open_.size() == count_; }
 
 private:
     std::size_t count_;
