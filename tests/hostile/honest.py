@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The honest client: a process that watches a stream, acknowledges every frame and writes down when frames came.
 
-    python3 honest.py MESSAGES OUT TARGET
+    python3 honest.py MESSAGES OUT TARGET GRID
 
-OUT gets a line per event: `frame SECONDS`, `lost SECONDS WHY`; seconds of the machine's steady clock. It comes back when its
-stream is lost, as clients do, and ends with its parent or when told to.
+OUT gets a line per event: `frame SECONDS`, `lost SECONDS WHY`; seconds of the machine's steady clock. It comes back when
+its stream is lost, as clients do, and ends with its parent or when told to.
 """
 import dataclasses
 import json
@@ -17,9 +17,10 @@ import time
 COME_BACK_S = 0.2
 
 
-def watch(target, out):
+def watch(target, grid, out):
     """One session after the other."""
     from connection import Closed, Connection
+    from fieldcast.v1 import types_pb2 as types
     from session import Broken, Session
 
     parent = os.getppid()
@@ -27,7 +28,7 @@ def watch(target, out):
         try:
             with Connection(target) as connection:
                 session = Session(connection)
-                session.configure()
+                session.configure(grid=types.Grid(rows=grid[0], cols=grid[1]))
                 while os.getppid() == parent:
                     frame = session.read_frame(1.0)
                     if frame is not None:
@@ -41,11 +42,11 @@ def watch(target, out):
 class Honest:
     """Starts that process; tells what it got between two times."""
 
-    def __init__(self, messages, folder, target):
+    def __init__(self, messages, folder, target, grid):
         self._out = pathlib.Path(folder) / "honest.txt"
         self._out.touch()
         self._process = subprocess.Popen([sys.executable, "-B", __file__, str(messages), str(self._out),
-                                          json.dumps(dataclasses.asdict(target))])
+                                          json.dumps(dataclasses.asdict(target)), json.dumps(grid)])
 
     def __enter__(self):
         return self
@@ -87,7 +88,7 @@ def main():
     from connection import Target
 
     with open(sys.argv[2], "a", encoding="utf-8") as out:
-        watch(Target(**json.loads(sys.argv[3])), out)
+        watch(Target(**json.loads(sys.argv[3])), json.loads(sys.argv[4]), out)
 
 
 if __name__ == "__main__":

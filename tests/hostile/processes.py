@@ -151,9 +151,13 @@ class Envoy(Process):
 
 
 def metric(port, series):
-    """A value of the plain-text metrics page; None if it has no such series."""
+    """A value of the plain-text metrics page; 0 if it has no such series yet."""
     with socket.create_connection(("127.0.0.1", port), timeout=5) as page:
         page.sendall(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
         text = b"".join(iter(lambda: page.recv(1 << 16), b"")).decode("utf-8", "replace")
     found = re.search("^" + re.escape(series) + r" (\S+)", text, re.MULTILINE)
-    return float(found.group(1)) if found else None
+    return float(found.group(1)) if found else 0.0
+
+
+def metrics(port, *series):
+    return [metric(port, each) for each in series]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """All scenarios, in the order of docs/security.md."""
-from scenarios import connections, held
+from scenarios import connections, held, metrics
 
-ALL = [*connections.SCENARIOS, *held.SCENARIOS]
+PARTS = [connections, metrics, held]
+ALL = [scenario for part in PARTS for scenario in part.SCENARIOS]

@@ -13,12 +13,13 @@ def endless_continuation(field):
     with RawConnection(field.target) as connection:
         connection.push(frame(HEADERS, 0, 1, connection.header_block(OPEN)))
         sent = 0
-        while sent < FLOOD_MIB << 20 and field.has_time() and connection.push(frame(CONTINUATION, 0, 1, field_of_header)):
-            sent += len(field_of_header)
+        part = frame(CONTINUATION, 0, 1, field_of_header)
+        while sent < FLOOD_MIB << 20 and field.has_time() and connection.push(part):
+            sent += len(part)
         field.expect("is cut off", connection.is_closed_within(2.0), f"after {sent / 2**20:.1f} MiB")
 
 
-# Of a thread that the attack keeps busy, the honest client gets a fifth at least: half, and room for a machine with other work.
+# Of a thread that the attack keeps busy, the honest client gets a fifth at least: half, and room for other work.
 BY_ENVOY = "Envoy holds back 1 MiB of a connection, and shares its only thread among all"
 SCENARIOS = [
     Scenario("continuation-envoy", 1, "a header block that never ends, through Envoy", endless_continuation,

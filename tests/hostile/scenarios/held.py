@@ -10,7 +10,7 @@ import recordings
 from connection import Closed, Connection, Target
 from fieldcast.v1 import light_field_pb2 as v1
 from fieldcast.v1 import types_pb2 as types
-from raw import PREFACE, RawConnection, frame, header_frames, literal_field
+from raw import PREFACE, RawConnection, frame
 from scenario import Bounds, Scenario, Setup
 from session import OPEN, Session
 
@@ -140,22 +140,6 @@ def acknowledgement_flood(field):
                      f"status {session.call.status} after {sent} messages")
 
 
-def metadata_bombs(field):
-    """Calls with 64 KB of metadata, a thousand fields of it, or empty fields without end."""
-    bombs = [literal_field(b"bomb", b"x" * 60_000), b"".join(literal_field(b"bomb-%d" % i, b"y" * 40) for i in range(1000)),
-             literal_field(b"authorization", b"Bearer " + b"z" * 30_000) * 2, literal_field(b"bomb-bin", b"A" * 50_000),
-             literal_field(b"b", b"") * 15_000]
-    sent = 0
-    while field.has_time(5.0):
-        with contextlib.suppress(OSError), RawConnection(field.target) as connection:
-            block = connection.header_block(OPEN)
-            for stream in range(1, 120, 2):
-                if not connection.push(header_frames(stream, block + bombs[stream // 2 % len(bombs)])):
-                    break
-                sent += 1
-    field.expect("bombs were sent", sent > 50, sent)
-
-
 def drain_under_attack(field):
     """TERM while thirty sessions ignore GoingAway and others keep coming."""
     with Connection(field.target) as connection:
@@ -172,14 +156,16 @@ def drain_under_attack(field):
                 refused += 1
                 time.sleep(0.05)
         took = time.monotonic() - begin
-        field.expect("has ended within the 8 s that the drain may take", took < 9.0, f"{took:.1f} s, {refused} turned away")
+        field.expect("has ended within the 8 s that the drain may take", took < 9.0,
+                 f"{took:.1f} s, {refused} turned away")
 
 
 def tls_garbage(field):
     """Handshakes that are none, stop half-way, or speak plain HTTP/2 to the port of TLS."""
     noise = random.Random(SEED)
     hello = bytes.fromhex("160301020001 0001fc0303".replace(" ", ""))
-    starts = [b"", hello, hello + noise.randbytes(600), PREFACE + frame(4, 0, 0), b"\x80\x2e\x01\0\x02", noise.randbytes(4000)]
+    starts = [b"", hello, hello + noise.randbytes(600), PREFACE + frame(4, 0, 0), b"\x80\x2e\x01\0\x02",
+              noise.randbytes(4000)]
     target = dataclasses.replace(field.target, ca=None)
     held = []
     for attempt in range(150):
@@ -197,7 +183,7 @@ def tls_garbage(field):
 
 
 def damaged_recordings(field):
-    """Recordings with damaged bytes, each served by a server of its own: it says what is wrong, or serves what is left."""
+    """Recordings with damaged bytes, each served by a server of its own, which says what is wrong or serves what is left."""
     noise, codes = random.Random(SEED), {}
     for attempt in range(8):
         if not field.has_time(8.0):
@@ -233,7 +219,8 @@ SCENARIOS = [
     Scenario("unread", 0, "forty sessions that do not read", unread_streams, Bounds(MANY, log_lines=SESSIONS)),
     Scenario("unacknowledged", 0, "forty sessions that acknowledge nothing", unacknowledged_streams,
              Bounds(MANY, log_lines=SESSIONS)),
-    Scenario("acknowledgement-flood", 0, "acknowledgements of frames that never were", acknowledgement_flood, Bounds(QUIET)),
+    Scenario("acknowledgement-flood", 0, "acknowledgements of frames that never were", acknowledgement_flood,
+             Bounds(QUIET)),
     Scenario("drain", 0, "TERM while thirty sessions ignore GoingAway and others come", drain_under_attack,
              Bounds("sessions take 3 lines, those refused meanwhile are logged up to 26 times", log_lines=3 * 30 + 60),
              Setup(has_honest=False)),
