@@ -91,7 +91,7 @@ TEST(ProtocolPage, HasTheLimitsOfTheServer) {
     expect("views", std::string("at most ") + number(limits.max_view_set_pixels));
     expect("views of one peer", number(limits.max_pixels_per_peer));
     expect("views of one channel", number(config.max_channel_pixels));
-    expect("own cameras", of_peer(config.max_own_cameras, limits.max_own_cameras_per_peer));
+    expect("own cameras", std::string("of one peer ") + number(limits.max_own_cameras_per_peer));
     expect("scene downloads", of_peer(limits.max_scene_downloads, limits.max_scene_downloads_per_peer));
     expect("chunk of a scene that is not read", seconds(limits.stall_deadline));
     expect("channel without frames", seconds(limits.channel_deadline));
