@@ -4,6 +4,7 @@
 #include "core/base/stop_signals.h"
 #include "server/channel/channel_list.h"
 #include "server/channel/offline_recording.h"
+#include "server/listener/descriptor.h"
 #include "server/metrics/process_metrics.h"
 #include "server/ops/flags.h"
 #include "server/ops/port_file.h"
@@ -24,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kOk = 0;
 constexpr int kMachineFailed = 1;
 constexpr int kUserError = 2;
+constexpr int kDeaf = 3; // a supervisor starts it again
 constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
@@ -82,15 +84,25 @@ void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing
     }
 }
 
-/// Until a signal, or until a channel fails.
-bool serve(const StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
+/// Why the server ends: what clients are told, and the exit code.
+struct Ending {
+    const char* reason;
+    int exit_code;
+};
+
+/// Until a signal, until a channel fails, or until nobody new gets in.
+Ending serve(const StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds,
+             const service::GrpcServer& server) {
     const auto has_failed = [](const std::shared_ptr<feed::Feed>& feed) { return feed->has_failed(); };
     while (!signals.wait(kPollInterval)) {
         if (std::ranges::any_of(feeds, has_failed)) {
-            return false;
+            return {.reason = "a channel failed", .exit_code = kMachineFailed};
+        }
+        if (server.is_deaf()) {
+            return {.reason = "the port does not answer", .exit_code = kDeaf};
         }
     }
-    return true;
+    return {.reason = "the server is shutting down", .exit_code = kOk};
 }
 
 /// Until every client has gone, a second signal, or the limit.
@@ -109,6 +121,7 @@ void drain(const StopSignals& signals, service::GrpcServer& server, const std::s
 int run(const ops::Config& config, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
+    listener::raise_descriptor_limit();
     const auto registry = std::make_shared<metrics::Registry>();
     std::optional<timing::Recorder> recorder; // before the channels: outlives all that tell it something
     if (config.timing_files.any()) {
@@ -130,9 +143,9 @@ int run(const ops::Config& config, const StopSignals& signals) {
                           {"tls", config.security.certificates.has_value()},
                           {"tokens", config.security.tokens.has_value()},
                           {"channels", feeds.size()}});
-    const bool is_signal = serve(signals, feeds);
-    drain(signals, server, is_signal ? "the server is shutting down" : "a channel failed");
-    return is_signal ? kOk : kMachineFailed;
+    const Ending ending = serve(signals, feeds, server);
+    drain(signals, server, ending.reason);
+    return ending.exit_code;
 }
 
 int probe(const service::HealthQuestion& question) {

@@ -16,6 +16,7 @@ namespace fieldcast::access {
 struct Security {
     std::optional<CertificateFiles> certificates; ///< unset: plain text
     std::optional<std::filesystem::path> tokens;  ///< unset: everybody may do everything
+    bool accepts_known_attacks = false;           ///< on gRPC itself, see exposure_problem()
 };
 
 /// Follows changes of the token file and the certificates once a second, in a thread of its own. A file that has become

@@ -133,6 +133,10 @@ void check_access(const Config& config, Problems& problems) {
     if (const auto problem = access::listening_problem(config.listen.host, protection)) {
         problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
     }
+    if (const auto problem =
+            access::exposure_problem(config.listen.host, service::grpc_version(), security.accepts_known_attacks)) {
+        problems.push_back("--listen " + to_text(config.listen) + " " + *problem);
+    }
     if (config.metrics_listen) {
         const auto problem = access::listening_problem(config.metrics_listen->host, protection);
         if (problem && !is_loopback(config.metrics_listen->host)) {

@@ -10,6 +10,7 @@
 #include "server/ops/limit_flags.h"
 #include "server/ops/new_token.h"
 #include "server/ops/recording_flags.h"
+#include "server/ops/security_flags.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -29,9 +30,10 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server --replay a.fcrec                                             # and back, without a device
   fieldcast-server --make-token alice view
   fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
-  fieldcast-server --scene a.gltf --listen 0.0.0.0:50151 --tls-cert cert.pem --tls-key key.pem --tokens tokens.txt
+  fieldcast-server --scene a.gltf --tokens tokens.txt      # behind Envoy, see deploy/envoy.yaml
 
-TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input.)";
+TERM or INT: drain, then stop. Again: stop at once. Exit codes: 0 ok, 1 the machine failed, 2 wrong input,
+3 the port went deaf.)";
 
 void add_scene_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--scene", text.scenes, "A .gltf or .glb file; its channel is named after it. May be repeated")
@@ -149,7 +151,7 @@ void add_render_flags(CLI::App& app, FlagText& text, Config& config) {
 
 void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--listen", text.listen,
-                   "HOST:PORT; beyond loopback only with TLS and tokens; port 0: any, with --port-file")
+                   "HOST:PORT; beyond loopback only with TLS, tokens and gRPC 1.57; port 0: any, with --port-file")
         ->group("Serving")
         ->capture_default_str();
     app.add_option("--port-file", text.port_file, "Gets the port number once the server is SERVING")->group("Serving");
@@ -172,17 +174,6 @@ void add_serving_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--log-level", text.log_level, "debug, info, warn or error")
         ->group("Serving")
         ->capture_default_str();
-}
-
-void add_security_flags(CLI::App& app, FlagText& text) {
-    app.add_option("--tls-cert", text.tls_cert, "PEM file: certificate of the server and what links it to a root")
-        ->group("Security");
-    app.add_option("--tls-key", text.tls_key, "PEM file: its private key, without passphrase")->group("Security");
-    app.add_option("--tls-client-ca", text.tls_client_ca,
-                   "PEM file: clients must show a certificate that one of these has signed")
-        ->group("Security");
-    app.add_option("--tokens", text.tokens, "Who may call: lines of NAME ROLE sha256:HEX, see --make-token")
-        ->group("Security");
 }
 
 void add_health_flags(CLI::App& app, HealthText& text) {
@@ -272,7 +263,7 @@ struct CommandLine {
         add_serving_flags(app, text, config);
         add_recording_flags(app, text.recording, config);
         add_limit_flags(app, config);
-        add_security_flags(app, text);
+        add_security_flags(app, text, config.security);
         add_health_flags(app, health);
         if (task == Task::kRender) {
             add_offline_flags(app, job, products);

@@ -29,6 +29,7 @@ void add_limit_flags(CLI::App& app, Config& config) {
     const auto add = [&](const char* flag, auto& value, const char* help) {
         app.add_option(flag, value, help)->group("Limits")->capture_default_str();
     };
+    add("--max-connections", limits.max_connections, "At the same time; fewer if there are few descriptors");
     add("--max-sessions", limits.max_sessions, "Clients at the same time");
     add("--max-sessions-per-peer", limits.max_sessions_per_peer, "Of one address");
     add("--max-opens-per-second-per-peer", limits.max_opens_per_second_per_peer,
@@ -59,6 +60,7 @@ std::vector<std::string> limit_problems(const Config& config) {
     const auto expect_amount = [&](const char* flag, std::uint64_t value) {
         expect(problems, flag, value, std::uint64_t{1}, kMaxAmount);
     };
+    expect_count("--max-connections", limits.max_connections);
     expect_count("--max-sessions", limits.max_sessions);
     expect_count("--max-sessions-per-peer", limits.max_sessions_per_peer);
     expect_count("--max-scene-downloads", limits.max_scene_downloads);

@@ -7,8 +7,10 @@
 #include "server/access/listening_rule.h"
 #include "server/service/catalog_service.h"
 #include "server/service/credentials.h"
+#include "server/service/front_door.h"
 #include "server/service/light_field_service.h"
 #include "server/service/transport_log.h"
+#include "server/service/transport_options.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -29,21 +31,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTickInterval{50};
 constexpr milliseconds kDepartureSpread{1000};
-constexpr int kMaxStreamsPerConnection = 64;
-
-void set_transport_options(grpc::ServerBuilder& builder, const session::Limits& limits) {
-    const auto ms = [](milliseconds duration) { return static_cast<int>(duration.count()); };
-    builder.SetMaxReceiveMessageSize(session::kMaxClientMessageBytes);
-    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0); // two servers on one port are a mistake
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreamsPerConnection);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, ms(limits.keepalive_interval));
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, ms(limits.keepalive_timeout));
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, ms(limits.handshake_deadline));
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, ms(limits.idle_deadline));
-    builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-    builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);
-}
 
 /// One round of heartbeats and deadlines for every stream.
 void tick_all(SessionTable& sessions) {
@@ -71,9 +58,16 @@ void check_protection(const HostPort& address, const access::Security& security)
     if (const auto problem = access::listening_problem(address.host, protection)) {
         throw UserError("--listen " + to_text(address) + ": " + *problem);
     }
+    if (const auto problem = access::exposure_problem(address.host, grpc_version(), security.accepts_known_attacks)) {
+        throw UserError("--listen " + to_text(address) + ": " + *problem);
+    }
 }
 
 } // namespace
+
+std::string grpc_version() {
+    return grpc::Version();
+}
 
 struct GrpcServer::State {
     State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
@@ -102,8 +96,8 @@ struct GrpcServer::State {
     };
     mutable Guarded<Health> health;
     metrics::Collector collector;
-    int port = 0;
     std::unique_ptr<grpc::Server> server;
+    std::optional<FrontDoor> door; ///< closes before the server ends
     std::jthread ticker;
 };
 
@@ -119,15 +113,19 @@ void GrpcServer::State::tick_until(const std::stop_token& stop) {
     }
 }
 
-/// Health follows what clients see: a channel whose device hangs has not failed, but does not serve either.
+/// Health follows what clients see: a channel whose device hangs has not failed, but does not serve either, and nobody
+/// new is served by a port that does not answer.
 void GrpcServer::State::look_at_channels() {
     const auto now = Clock::now();
     const auto is_silent = [&](const auto& channel) { return channel->waiting_time(now) >= limits.channel_deadline; };
-    const bool serves = std::ranges::none_of(channels, is_silent);
+    const bool is_heard = door->hearing() == listener::Hearing::kHears;
+    const bool has_frames = std::ranges::none_of(channels, is_silent);
+    const bool serves = is_heard && has_frames;
     auto state = health.lock(); // also while it is told, so that draining has the last word
     if (!state->is_draining && serves != state->is_serving) {
-        serves ? log::info("frames come again", {})
-               : log::error("no frames although clients wait", {{"ms", limits.channel_deadline.count()}});
+        serves      ? log::info("serving again", {})
+        : !is_heard ? log::error("not serving: the own port does not answer", {})
+                    : log::error("no frames although clients wait", {{"ms", limits.channel_deadline.count()}});
         state->is_serving = serves;
         server->GetHealthCheckService()->SetServingStatus(serves); // of all services, and of the empty name
     }
@@ -157,16 +155,17 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
     state_ = std::make_unique<State>(channels, limits, security, observation);
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-    const std::string text = to_text(address);
     grpc::ServerBuilder builder;
     set_transport_options(builder, limits);
-    builder.AddListeningPort(text, make_credentials(security, state_->gate, state_->service_metrics), &state_->port);
+    state_->door.emplace(builder, make_credentials(security, state_->gate, state_->service_metrics), address, security,
+                         limits);
     builder.RegisterService(&state_->catalog);
     builder.RegisterService(&state_->light_field);
     state_->server = builder.BuildAndStart();
-    if (state_->server == nullptr || state_->port == 0) {
-        throw std::runtime_error("cannot listen on " + text + "; is the port in use?");
+    if (state_->server == nullptr) {
+        throw std::runtime_error("gRPC does not start");
     }
+    state_->door->open(*state_->registry);
     grpc::HealthCheckServiceInterface& health = *state_->server->GetHealthCheckService();
     health.SetServingStatus(v1::Catalog::service_full_name(), true);
     health.SetServingStatus(v1::LightField::service_full_name(), true);
@@ -176,13 +175,15 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
 
 GrpcServer::~GrpcServer() {
     if (state_->server != nullptr) {
+        state_->ticker = {}; // asks the door
+        state_->door.reset(); // hands over to the server
         state_->server->Shutdown(std::chrono::system_clock::now()); // cancels all calls and waits for their OnDone
         state_->server->Wait();
     }
 }
 
 int GrpcServer::port() const {
-    return state_->port;
+    return state_->door->port();
 }
 
 void GrpcServer::begin_drain(const std::string& reason) {
@@ -204,6 +205,10 @@ bool GrpcServer::wait_until_drained(Clock::time_point deadline) {
 
 const access::Gate& GrpcServer::gate() const {
     return state_->gate;
+}
+
+bool GrpcServer::is_deaf() const {
+    return state_->door->hearing() == listener::Hearing::kDeaf;
 }
 
 std::size_t GrpcServer::session_count() {

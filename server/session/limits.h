@@ -9,6 +9,7 @@ namespace fieldcast::session {
 
 /// What one client may ask for and how long it may take; the rest depends on the channel.
 struct Limits {
+    std::uint32_t max_connections = 256; ///< fewer if there are few descriptors
     std::uint32_t max_sessions = 64;
     std::uint32_t max_sessions_per_peer = 64;
     double max_opens_per_second_per_peer = 10.0; ///< sessions, on average; max_sessions_per_peer of them at once
@@ -32,6 +33,9 @@ struct Limits {
     std::chrono::milliseconds keepalive_interval{20'000}; ///< silence after which a connection is asked
     std::chrono::milliseconds keepalive_timeout{10'000};  ///< for its answer
     std::chrono::milliseconds heartbeat_interval{250};    ///< the protocol asks for at most 500 ms
+    std::chrono::milliseconds probe_interval{1'000};      ///< from an answer of the own port to the next question
+    std::chrono::milliseconds probe_patience{5'000};      ///< for that answer; a busy machine may take seconds
+    int probe_failures_until_deaf = 3;                    ///< in a row
 };
 
 /// A Configure counts as so many messages: it changes what is rendered.

@@ -41,17 +41,24 @@ def runtime_packages():
     return [line[2:].split("|")[0].strip() for line in read("deps.txt").splitlines() if line.startswith("#! ")]
 
 
-class Unit(unittest.TestCase):
+class Units:
+    """What both units promise."""
+    name = program = None
+
     def setUp(self):
         need(self, "systemd-analyze")
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.text = read(DEPLOY / "fieldcast-server.service")
+        self.text = read(DEPLOY / self.name)
 
     def analyze(self, text, *command):
-        unit = pathlib.Path(self.folder.name) / "fieldcast-server.service"
-        unit.write_text(text.replace("/usr/bin/fieldcast-server", "/bin/true"), encoding="utf-8")
+        unit = pathlib.Path(self.folder.name) / self.name
+        self.assertIn(self.program, text)
+        unit.write_text(text.replace(self.program, "/bin/true"), encoding="utf-8")
         return run("systemd-analyze", *command, str(unit))
+
+    def number(self, name):
+        return int(re.search(rf"^{name}=(\d+)M?$", self.text, re.MULTILINE).group(1))
 
     def test_is_understood(self):
         result = self.analyze(self.text, "verify")
@@ -68,8 +75,29 @@ class Unit(unittest.TestCase):
         self.assertEqual(0, result.returncode, result.stdout)
 
     def test_allows_a_drain(self):
-        stop = int(re.search(r"^TimeoutStopSec=(\d+)$", self.text, re.MULTILINE).group(1))
-        self.assertGreater(stop, 8, "seconds that a drain takes at most")
+        self.assertGreater(self.number("TimeoutStopSec"), 8, "seconds that a drain takes at most")
+
+
+class ServerUnit(Units, unittest.TestCase):
+    name, program = "fieldcast-server.service", "/usr/bin/fieldcast-server"
+
+    def test_starts_a_deaf_server_again(self):
+        self.assertIn("\nRestart=on-failure\n", self.text)
+        self.assertEqual(2, self.number("RestartPreventExitStatus"), "3, a deaf port, is not among them")
+
+
+class EnvoyUnit(Units, unittest.TestCase):
+    name, program = "fieldcast-envoy.service", "/opt/fieldcast-envoy/bin/envoy"
+
+    def test_has_room_for_what_envoy_is_allowed(self):
+        config = read(DEPLOY / "envoy.yaml")
+        connections = int(re.search(r"max_active_downstream_connections: (\d+)", config).group(1))
+        heap = int(re.search(r"max_heap_size_bytes: (\d+)", config).group(1))
+        self.assertGreater(self.number("LimitNOFILE"), 2 * connections)
+        self.assertGreater(self.number("MemoryMax") << 20, heap)
+
+    def test_runs_the_file_that_is_tested(self):
+        self.assertIn("-c /etc/fieldcast/envoy.yaml", self.text)
 
 
 class Container(unittest.TestCase):

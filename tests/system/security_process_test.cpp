@@ -54,6 +54,7 @@ TEST_F(SecurityProcess, RefusesToListenBeyondLoopbackAndSaysWhatIsMissing) {
     const std::string said = run_server({"--scene", "scenes/atelier/atelier.gltf", "--listen", "0.0.0.0:50151"}, 2);
     EXPECT_THAT(said, HasSubstr("--listen 0.0.0.0:50151"));
     EXPECT_THAT(said, HasSubstr("--tls-cert, --tls-key and --tokens are missing"));
+    EXPECT_THAT(said, HasSubstr("--accept-known-grpc-attacks"));
 }
 
 TEST_F(SecurityProcess, MakesTokensForKnownRolesOnly) {
@@ -76,6 +77,7 @@ protected:
         server_.emplace(FIELDCAST_SERVER,
                         std::vector<std::string>{"--scene", "scenes/atelier/atelier.gltf", "--size", "64x36", "--clock",
                                                  "frames", "--listen", "0.0.0.0:0", "--port-file", folder_ / "port",
+                                                 "--accept-known-grpc-attacks",
                                                  "--tls-cert", folder_ / "cert.pem", "--tls-key", folder_ / "key.pem",
                                                  "--tokens", folder_ / "tokens.txt", "--log-level", "debug"},
                         folder_ / "server.log");

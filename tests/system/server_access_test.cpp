@@ -166,6 +166,29 @@ TEST(ListeningRule, PlainTextStaysOnLoopback) {
     }
 }
 
+TEST(ListeningRule, OldVersionsOfGrpcDoNotWithstandStrangers) {
+    for (const char* const version : {"1.57.0", "1.57", "1.57.0-pre1", "1.60.2", "1.100.0", "2.0.0"}) {
+        EXPECT_TRUE(withstands_strangers(version)) << version;
+    }
+    for (const char* const version : {"1.51.1", "1.56.9", "1.9.100", "0.99.0", "", "1", "1.", "1.x", "v1.60", ".57"}) {
+        EXPECT_FALSE(withstands_strangers(version)) << version;
+    }
+}
+
+TEST(ListeningRule, OldVersionsOfGrpcStayOnLoopbackUnlessTheOperatorAcceptsIt) {
+    for (const char* const host : {"0.0.0.0", "[::]", "192.168.1.4", "example.org"}) {
+        const std::string problem = exposure_problem(host, "1.51.1", false).value_or("");
+        EXPECT_THAT(problem, HasSubstr("gRPC 1.51.1")) << host;
+        EXPECT_THAT(problem, HasSubstr("deploy/envoy.yaml")) << host;
+        EXPECT_THAT(problem, HasSubstr("--accept-known-grpc-attacks")) << host;
+        EXPECT_EQ(exposure_problem(host, "1.51.1", true), std::nullopt) << host;
+        EXPECT_EQ(exposure_problem(host, "1.57.0", false), std::nullopt) << host;
+    }
+    for (const char* const host : {"127.0.0.1", "127.1.2.3", "[::1]", "localhost"}) {
+        EXPECT_EQ(exposure_problem(host, "1.51.1", false), std::nullopt) << host;
+    }
+}
+
 TEST(ListeningRule, TokensInPlainTextOnlyWhereCallersAreChecked) {
     const Protection tokens_only{.has_tls = false, .has_tokens = true};
     EXPECT_EQ(listening_problem("127.0.0.1", tokens_only), std::nullopt);

@@ -16,6 +16,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// A file that exists; tests run in the repository root.
 constexpr const char* kFile = "CMakeLists.txt";
@@ -178,6 +179,9 @@ TEST(Flags, GiveEveryClientACamera) {
 TEST(Flags, RefusesToListenForTheWorld) {
     for (const char* const listen : {"0.0.0.0:50151", "192.168.1.4:50151", "[::]:50151", "example.org:80"}) {
         EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("loopback"))) << listen;
+        EXPECT_THAT(read({"--scene", kFile, "--listen", listen}).problems, Contains(HasSubstr("deploy/envoy.yaml")));
+        EXPECT_THAT(read({"--scene", kFile, "--accept-known-grpc-attacks", "--listen", listen}).problems,
+                    Not(Contains(HasSubstr("gRPC"))));
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the gRPC edge says about itself: counters, gauges, health.
+#include "no_descriptors.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
 #include "server_client.h"
@@ -54,6 +55,30 @@ protected:
 
     const std::shared_ptr<metrics::Registry> registry_ = std::make_shared<metrics::Registry>();
 };
+
+TEST_F(Observation, NeverSaysServingWhileItsPortIsDeaf) {
+    SyntheticChannel channel;
+    session::Limits limits;
+    limits.probe_interval = 10ms;
+    limits.probe_patience = 500ms;
+    const auto server = serve(channel.feed(), limits);
+    const auto connection = connect(server->port());
+    const auto told = [&] {
+        std::string answer;
+        EXPECT_TRUE(call_raw(*connection, "/grpc.health.v1.Health/Check", "", answer).ok());
+        return answer;
+    };
+    EXPECT_EQ(told(), "\x08\x01") << "SERVING";
+    EXPECT_TRUE(shows("fieldcast_serving 1\n"));
+    {
+        const NoDescriptors none;
+        EXPECT_TRUE(shows("fieldcast_serving 0\n"));
+        EXPECT_EQ(told(), "\x08\x02") << "NOT_SERVING, on a connection that was there before";
+        EXPECT_TRUE(lacks("fieldcast_connections_failed_total 0\n"));
+    }
+    EXPECT_TRUE(shows("fieldcast_serving 1\n"));
+    EXPECT_EQ(told(), "\x08\x01");
+}
 
 TEST_F(Observation, CountsFramesBytesAndSessions) {
     SyntheticChannel channel;

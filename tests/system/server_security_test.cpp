@@ -3,6 +3,7 @@
 #include "certificate_authority.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "server/access/listening_rule.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"
 #include "server_synthetic.h"
@@ -103,8 +104,26 @@ TEST_F(Security, NobodyListensBeyondLoopbackUnprotected) {
         EXPECT_THROW(service::GrpcServer({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(), security),
                      UserError);
     }
-    const service::GrpcServer open({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(), tls_and_tokens());
+    access::Security accepting = tls_and_tokens();
+    accepting.accepts_known_attacks = true;
+    const service::GrpcServer open({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(), accepting);
     EXPECT_TRUE(status_of(open.port(), trusting(authority_), viewer_).ok());
+}
+
+TEST_F(Security, AnOldGrpcDoesNotMeetStrangersUnasked) {
+    if (access::withstands_strangers(service::grpc_version())) {
+        const service::GrpcServer open({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(),
+                                       tls_and_tokens());
+        EXPECT_NE(open.port(), 0);
+        return;
+    }
+    try {
+        const service::GrpcServer open({.host = "0.0.0.0", .port = 0}, {channel_.feed()}, quick_limits(),
+                                       tls_and_tokens());
+        FAIL() << "it listens";
+    } catch (const UserError& problem) {
+        EXPECT_THAT(problem.what(), HasSubstr("gRPC " + service::grpc_version()));
+    }
 }
 
 TEST_F(Security, SendsFramesEncryptedToWhoeverShowsAToken) {

@@ -47,6 +47,10 @@ fieldcast_test(server_access_test LABELS quick
 add_library(http_client STATIC ${CMAKE_CURRENT_LIST_DIR}/http_client.cpp)
 target_include_directories(http_client PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
 target_link_libraries(http_client PRIVATE OpenSSL::SSL OpenSSL::Crypto fieldcast_warnings)
+fieldcast_test(server_listener_test LABELS quick tsan
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_listener_test.cpp
+    DEPENDS fieldcast_server_listener)
+target_include_directories(server_listener_test PRIVATE ${CMAKE_CURRENT_LIST_DIR})
 fieldcast_test(server_metrics_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_metrics_test.cpp
     DEPENDS fieldcast_server_metrics)
@@ -98,6 +102,11 @@ add_dependencies(server_process_test fieldcast-server)
 add_library(test_program STATIC ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
 target_include_directories(test_program PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
 target_link_libraries(test_program PRIVATE GTest::gtest fieldcast_warnings)
+fieldcast_test(descriptor_process_test LABELS system TIMEOUT 300
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/descriptor_process_test.cpp
+    DEPENDS http_client test_program)
+add_dependencies(descriptor_process_test fieldcast-server)
+target_compile_definitions(descriptor_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_library(running_server STATIC ${CMAKE_CURRENT_LIST_DIR}/running_server.cpp)
 target_link_libraries(running_server PUBLIC test_program http_client server_client PRIVATE GTest::gtest fieldcast_warnings)
 find_package(nlohmann_json REQUIRED)

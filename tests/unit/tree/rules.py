@@ -36,7 +36,7 @@ LIBRARIES = {
     "embree": ("core/scene", "bench"),
     "meshoptimizer": ("core/scene",),
     "boost/": ("server/web",),
-    "openssl/": ("core/scene", "server/access"),
+    "openssl/": ("core/scene", "server/access", "server/listener"),
     "toml": ("core/base",),
     "spdlog/": ("core/base",),
     "grpc": ("server/service", "client/net", "bench/fanout"),

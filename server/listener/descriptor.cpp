@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/listener/descriptor.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace fieldcast::listener {
+
+namespace {
+
+/// Recordings, callers of /metrics, token files that are read again, what gRPC and the driver open now and then. Fewer
+/// where a quarter of all descriptors is less.
+constexpr std::size_t kReserve = 64;
+
+} // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+}
+
+Descriptor::~Descriptor() {
+    if (is_open()) {
+        ::close(number_);
+    }
+}
+
+std::size_t raise_descriptor_limit() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
+        limit.rlim_cur = limit.rlim_max;
+        setrlimit(RLIMIT_NOFILE, &limit); // where that is refused, the limit stays what it was
+    }
+    return descriptor_limit();
+}
+
+std::size_t descriptor_limit() {
+    rlimit limit{};
+    return getrlimit(RLIMIT_NOFILE, &limit) == 0 ? static_cast<std::size_t>(limit.rlim_cur) : 0;
+}
+
+std::size_t open_descriptors() {
+    std::error_code error;
+    const std::filesystem::directory_iterator files("/proc/self/fd", error);
+    return error ? 0 : static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+std::size_t affordable_connections(std::size_t wanted, std::size_t limit, std::size_t open) {
+    const std::size_t kept = open + std::min(kReserve, limit / 4);
+    return std::clamp<std::size_t>(limit > kept ? limit - kept : 1, 1, std::max<std::size_t>(wanted, 1));
+}
+
+} // namespace fieldcast::listener

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/listener/wakeup.h"
+
+#include <cerrno>
+#include <sys/eventfd.h>
+#include <system_error>
+#include <unistd.h>
+#include <vector>
+
+namespace fieldcast::listener {
+
+namespace {
+
+int new_event() {
+    const int number = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (number < 0) {
+        throw std::system_error(errno, std::generic_category(), "eventfd");
+    }
+    return number;
+}
+
+} // namespace
+
+Wakeup::Wakeup(const std::stop_token& stop) : stop_(stop), event_(new_event()), on_stop_(stop, Ring{event_.number()}) {}
+
+void Wakeup::Ring::operator()() const {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(number, &one, sizeof one); // full: it has rung before
+}
+
+Wakeup::Outcome Wakeup::wait(std::span<pollfd> entries, std::chrono::milliseconds patience) const {
+    std::vector<pollfd> all(entries.begin(), entries.end());
+    all.push_back({.fd = event_.number(), .events = POLLIN, .revents = 0});
+    const int count = ::poll(all.data(), all.size(), static_cast<int>(patience.count()));
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        entries[i].revents = all[i].revents;
+    }
+    if (stop_.stop_requested()) {
+        return Outcome::kStopped;
+    }
+    return count == 0 ? Outcome::kLate : Outcome::kReady; // interrupted: ready, with no entry that is
+}
+
+} // namespace fieldcast::listener
