@@ -22,8 +22,8 @@ std::optional<std::string> listening_problem(const std::string& host, const Prot
 /// withstands nothing.
 bool withstands_strangers(std::string_view grpc_version);
 
-/// Why a server with that gRPC may not listen on `host`, or nothing: beyond loopback only one that withstands strangers,
-/// unless the operator accepts those attacks.
+/// Why a server with that gRPC may not listen on `host`, or nothing: beyond loopback only one that withstands
+/// strangers, unless the operator accepts those attacks.
 std::optional<std::string> exposure_problem(const std::string& host, const std::string& grpc_version,
                                             bool accepts_known_attacks);
 

@@ -4,7 +4,6 @@
 #include "core/base/log.h"
 #include "core/base/rate_limit.h"
 #include "server/listener/socket_address.h"
-#include "server/listener/wakeup.h"
 
 #include <cerrno>
 #include <cstring>
@@ -18,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kForEver{-1};
-constexpr milliseconds kPauseAfterFailure{100};                                 // until others give descriptors back
-constexpr RateLimit::Rate kLogRate{.per_second = 1.0 / 60.0, .burst = 3.0};     // strangers must not fill the disk
+constexpr milliseconds kPauseAfterFailure{100};                             // until others give descriptors back
+constexpr RateLimit::Rate kLogRate{.per_second = 1.0 / 60.0, .burst = 3.0}; // strangers must not fill the disk
 
 /// Names a socket for as long as the machine runs; nothing if the number is none of a socket any more.
 std::optional<std::uint64_t> cookie_of(int socket) {
@@ -42,13 +41,13 @@ Acceptor::Counts Acceptor::counts() const {
 }
 
 void Acceptor::accept_until(const std::stop_token& stop) {
-    const Wakeup wakeup(stop);
+    const std::stop_callback on_stop(stop, [this] { wakeup_.stop(); });
     std::vector<pollfd> entries;
     for (const Descriptor& socket : sockets_.all()) {
         entries.push_back({.fd = socket.number(), .events = POLLIN, .revents = 0});
     }
     RateLimit log_rate(kLogRate);
-    while (wakeup.wait(entries, kForEver) != Wakeup::Outcome::kStopped) {
+    while (wakeup_.wait(entries, kForEver) != Wakeup::Outcome::kStopped) {
         for (const pollfd& entry : entries) {
             if (entry.revents == 0 || accept_one(entry.fd)) {
                 continue;
@@ -56,7 +55,7 @@ void Acceptor::accept_until(const std::stop_token& stop) {
             if (log_rate.take(Clock::now())) {
                 log::error("connection not accepted", {{"problem", std::strerror(errno)}});
             }
-            wakeup.wait({}, kPauseAfterFailure);
+            wakeup_.wait({}, kPauseAfterFailure);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/guarded.h"
 #include "server/listener/listening_sockets.h"
+#include "server/listener/wakeup.h"
 
 #include <atomic>
 #include <cstdint>
@@ -53,6 +54,7 @@ private:
     const Take take_;
     std::atomic<int> privileged_port_ = 0;
     mutable Guarded<State> state_;
+    const Wakeup wakeup_;
     std::jthread thread_;
 };
 

@@ -27,8 +27,8 @@ Descriptor listen_on(const SocketAddress& address, std::chrono::milliseconds sil
     set(socket.number(), SOL_SOCKET, SO_REUSEADDR, 1); // a server that starts again; two at once stay refused
     set(socket.number(), IPPROTO_TCP, TCP_NODELAY, 1);
     set(socket.number(), IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(silence.count()));
-    const bool listens = ::bind(socket.number(), address.get(), address.size) == 0 &&
-                         ::listen(socket.number(), SOMAXCONN) == 0;
+    const bool listens =
+        ::bind(socket.number(), address.get(), address.size) == 0 && ::listen(socket.number(), SOMAXCONN) == 0;
     return listens ? std::move(socket) : Descriptor();
 }
 

@@ -9,8 +9,8 @@
 
 namespace fieldcast::listener {
 
-/// One port on every address that a host name stands for. Callers who shake no hands are accepted by the kernel from the
-/// constructor on.
+/// One port on every address that a host name stands for. Callers who shake no hands are accepted by the kernel from
+/// the constructor on.
 class ListeningSockets {
 public:
     /// Port 0: any free one. What is written to a caller and not acknowledged for `silence` ends its connection. Throws

@@ -9,9 +9,9 @@ SelfProbe::SelfProbe(OwnPort port, const ProbePace& pace)
     : port_(std::move(port)), pace_(pace), thread_([this](const std::stop_token& stop) { ask_until(stop); }) {}
 
 void SelfProbe::ask_until(const std::stop_token& stop) {
-    const Wakeup wakeup(stop);
-    while (wakeup.wait({}, pace_.interval) != Wakeup::Outcome::kStopped) {
-        const auto problem = port_.problem(wakeup, pace_.patience);
+    const std::stop_callback on_stop(stop, [this] { wakeup_.stop(); });
+    while (wakeup_.wait({}, pace_.interval) != Wakeup::Outcome::kStopped) {
+        const auto problem = port_.problem(wakeup_, pace_.patience);
         if (!stop.stop_requested()) {
             take_note(problem);
         }
@@ -24,6 +24,7 @@ void SelfProbe::take_note(const std::optional<std::string>& problem) {
         if (state->in_a_row > 0) {
             log::info("the own port answers again", {{"failures", state->in_a_row}});
         }
+        ++state->answers;
         state->in_a_row = 0;
         state->hearing = Hearing::kHears;
         return;

@@ -28,11 +28,13 @@ public:
     SelfProbe(OwnPort port, const ProbePace& pace);
 
     Hearing hearing() const { return state_.lock()->hearing; }
-    std::uint64_t failures() const { return state_.lock()->failures; } ///< so far
+    std::uint64_t answers() const { return state_.lock()->answers; }
+    std::uint64_t failures() const { return state_.lock()->failures; }
 
 private:
     struct State {
         Hearing hearing = Hearing::kHears;
+        std::uint64_t answers = 0;
         std::uint64_t failures = 0;
         int in_a_row = 0;
     };
@@ -43,6 +45,7 @@ private:
     OwnPort port_; ///< of the thread alone
     const ProbePace pace_;
     mutable Guarded<State> state_;
+    const Wakeup wakeup_;
     std::jthread thread_;
 };
 

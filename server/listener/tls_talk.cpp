@@ -21,8 +21,7 @@ struct TlsTalk::Session {
 TlsTalk::TlsTalk(int socket) : session_(std::make_unique<Session>()) {
     session_->ssl.reset(session_->context ? SSL_new(session_->context.get()) : nullptr);
     SSL* const ssl = session_->ssl.get();
-    if (ssl == nullptr || SSL_set_fd(ssl, socket) != 1 ||
-        SSL_set_alpn_protos(ssl, kHttp2.data(), kHttp2.size()) != 0) {
+    if (ssl == nullptr || SSL_set_fd(ssl, socket) != 1 || SSL_set_alpn_protos(ssl, kHttp2.data(), kHttp2.size()) != 0) {
         throw NoAnswer("no TLS session");
     }
     SSL_set_verify(ssl, SSL_VERIFY_NONE, nullptr);

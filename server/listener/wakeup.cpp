@@ -21,11 +21,11 @@ int new_event() {
 
 } // namespace
 
-Wakeup::Wakeup(const std::stop_token& stop) : stop_(stop), event_(new_event()), on_stop_(stop, Ring{event_.number()}) {}
+Wakeup::Wakeup() : event_(new_event()) {}
 
-void Wakeup::Ring::operator()() const {
+void Wakeup::stop() const {
     const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(number, &one, sizeof one); // full: it has rung before
+    [[maybe_unused]] const ssize_t written = ::write(event_.number(), &one, sizeof one); // full: it was called before
 }
 
 Wakeup::Outcome Wakeup::wait(std::span<pollfd> entries, std::chrono::milliseconds patience) const {
@@ -35,8 +35,8 @@ Wakeup::Outcome Wakeup::wait(std::span<pollfd> entries, std::chrono::millisecond
     for (std::size_t i = 0; i < entries.size(); ++i) {
         entries[i].revents = all[i].revents;
     }
-    if (stop_.stop_requested()) {
-        return Outcome::kStopped;
+    if (count > 0 && all.back().revents != 0) {
+        return Outcome::kStopped; // nobody reads the event, so it stays
     }
     return count == 0 ? Outcome::kLate : Outcome::kReady; // interrupted: ready, with no entry that is
 }

@@ -4,32 +4,28 @@
 #include "server/listener/descriptor.h"
 
 #include <chrono>
+#include <cstdint>
 #include <poll.h>
 #include <span>
-#include <stop_token>
 
 namespace fieldcast::listener {
 
-/// Lets a thread wait for descriptors and for its stop at the same time.
+/// Lets a thread wait for descriptors and for its stop at the same time. Made before the thread: it takes a descriptor.
 class Wakeup {
 public:
     /// Throws std::system_error.
-    explicit Wakeup(const std::stop_token& stop);
+    Wakeup();
 
     enum class Outcome : std::uint8_t { kReady, kLate, kStopped };
 
-    /// Until one of `entries` is ready, `patience` has passed (negative: never), or the stop.
+    /// Until one of `entries` is ready, `patience` has passed (negative: never), or somebody has called stop().
     Outcome wait(std::span<pollfd> entries, std::chrono::milliseconds patience) const;
 
-private:
-    struct Ring {
-        int number;
-        void operator()() const;
-    };
+    /// Ends every wait from now on. From any thread.
+    void stop() const;
 
-    std::stop_token stop_;
+private:
     Descriptor event_;
-    std::stop_callback<Ring> on_stop_;
 };
 
 } // namespace fieldcast::listener

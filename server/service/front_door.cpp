@@ -38,8 +38,8 @@ void FrontDoor::open(metrics::Registry& registry) {
     });
     acceptor_->let_in_always(own_port.local_port());
     probe_.emplace(std::move(own_port), listener::ProbePace{.interval = limits_.probe_interval,
-                                         .patience = limits_.probe_patience,
-                                         .failures_until_deaf = limits_.probe_failures_until_deaf});
+                                                            .patience = limits_.probe_patience,
+                                                            .failures_until_deaf = limits_.probe_failures_until_deaf});
     collector_ = registry.on_collect([this](metrics::Page& page) { collect(page); });
 }
 
@@ -53,13 +53,17 @@ void FrontDoor::collect(metrics::Page& page) const {
                    static_cast<double>(counts.open));
     page.add_counter({"fieldcast_connections_accepted_total", "Connections that were let in."}, {},
                      static_cast<double>(counts.accepted));
-    page.add_counter({"fieldcast_connections_refused_total", "Connections that were closed at once: there were enough."},
-                     {}, static_cast<double>(counts.refused));
+    page.add_counter(
+        {"fieldcast_connections_refused_total", "Connections that were closed at once: there were enough."}, {},
+        static_cast<double>(counts.refused));
     page.add_counter({"fieldcast_connections_failed_total",
                       "Times that a connection was not accepted for want of descriptors or memory."},
                      {}, static_cast<double>(counts.failed));
-    page.add_counter({"fieldcast_self_probe_failures_total", "Times that the own port did not answer the server itself."},
-                     {}, static_cast<double>(probe_->failures()));
+    page.add_counter({"fieldcast_self_probe_answers_total", "Times that the own port answered the server itself."}, {},
+                     static_cast<double>(probe_->answers()));
+    page.add_counter(
+        {"fieldcast_self_probe_failures_total", "Times that the own port did not answer the server itself."}, {},
+        static_cast<double>(probe_->failures()));
 }
 
 } // namespace fieldcast::service

@@ -7,7 +7,9 @@
 
 #include <csignal>
 #include <gmock/gmock.h>
+#include <poll.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 namespace fieldcast::test {
 namespace {
@@ -19,6 +21,14 @@ constexpr auto kPatience = 60s;
 constexpr int kDeafCode = 3;
 /// Three questions of 5 s, 1 s apart, and a drain of 8 s; as much again for a busy machine.
 constexpr auto kDeafWithin = 2 * 26s;
+
+/// Waits until the other side has closed; false if it does not, or says something.
+bool is_closed_by_server(int socket) {
+    pollfd entry{.fd = socket, .events = POLLIN, .revents = 0};
+    char byte = 0;
+    return ::poll(&entry, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) == 1 &&
+           ::recv(socket, &byte, 1, 0) <= 0;
+}
 
 class Descriptors : public testing::Test {
 protected:
@@ -68,6 +78,7 @@ TEST_F(Descriptors, CallersThatTakeAllOfThemAndLeaveDoNotMakeItDeaf) {
         for (int i = 0; i < 80; ++i) {
             idle.push_back(std::make_unique<HttpCaller>("127.0.0.1", port_));
         }
+        EXPECT_TRUE(is_closed_by_server(idle.back()->descriptor())) << "the last one is too much";
         EXPECT_THAT(metrics(), HasSubstr("\nfieldcast_serving 1\n")) << "there is a reserve, and it hears itself";
     }
     EXPECT_THAT(health(), HasSubstr("SERVING"));

@@ -150,7 +150,7 @@ TEST(Acceptor, LetsTheServersOwnQuestionInWhenItIsFull) {
     ASSERT_TRUE(taken.comes_to(1));
     OwnPort own_port(sockets.all().front().number(), Speech::kPlain);
     acceptor.let_in_always(own_port.local_port());
-    const Wakeup wakeup{std::stop_token()};
+    const Wakeup wakeup;
     EXPECT_THAT(own_port.problem(wakeup, 100ms).value_or(""), HasSubstr("in time")) << "let in, and nobody answers";
     EXPECT_TRUE(taken.comes_to(2));
     EXPECT_EQ(acceptor.counts().refused, 0U);
@@ -184,7 +184,7 @@ TEST(OwnPort, IsAskedAgainAndAgainFromOneSocket) {
     Answerer answerer(good_answer());
     const Acceptor acceptor(sockets, 8, answerer.take());
     OwnPort own_port(sockets.all().front().number(), Speech::kPlain);
-    const Wakeup wakeup{std::stop_token()};
+    const Wakeup wakeup;
     for (int i = 0; i < 200; ++i) {
         ASSERT_EQ(own_port.problem(wakeup, kPatience), std::nullopt) << i;
     }
@@ -196,7 +196,7 @@ TEST(OwnPort, KnowsSilenceFromAnAnswer) {
     Answerer answerer(std::string(64, 'x'));
     const Acceptor acceptor(sockets, 8, answerer.take());
     OwnPort own_port(sockets.all().front().number(), Speech::kPlain);
-    const Wakeup wakeup{std::stop_token()};
+    const Wakeup wakeup;
     EXPECT_THAT(own_port.problem(wakeup, 200ms).value_or(""), HasSubstr("in time")) << "rubbish is no answer";
     answerer.mute(true);
     EXPECT_THAT(own_port.problem(wakeup, 200ms).value_or(""), HasSubstr("in time"));
@@ -205,7 +205,7 @@ TEST(OwnPort, KnowsSilenceFromAnAnswer) {
 TEST(OwnPort, KnowsRefusals) {
     auto sockets = std::make_unique<ListeningSockets>(kAnyPort, 10s);
     OwnPort own_port(sockets->all().front().number(), Speech::kPlain);
-    const Wakeup wakeup{std::stop_token()};
+    const Wakeup wakeup;
     sockets.reset();
     EXPECT_THAT(own_port.problem(wakeup, kPatience).value_or(""), HasSubstr("refused"));
 }
@@ -213,9 +213,8 @@ TEST(OwnPort, KnowsRefusals) {
 TEST(OwnPort, StopsWaitingWhenItsThreadHasTo) {
     const ListeningSockets sockets(kAnyPort, 10s); // nobody accepts
     OwnPort own_port(sockets.all().front().number(), Speech::kPlain);
-    std::stop_source stop;
-    const Wakeup wakeup(stop.get_token());
-    stop.request_stop();
+    const Wakeup wakeup;
+    wakeup.stop();
     const auto begin = Clock::now();
     EXPECT_EQ(own_port.problem(wakeup, kPatience), std::nullopt);
     EXPECT_LT(Clock::now() - begin, kPatience);

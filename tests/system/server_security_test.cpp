@@ -135,6 +135,32 @@ TEST_F(Security, SendsFramesEncryptedToWhoeverShowsAToken) {
     EXPECT_TRUE(call.finish().ok());
 }
 
+TEST_F(Security, HearsItselfHoweverItIsProtected) {
+    const CertificateAuthority clients;
+    write_file(folder_ / "clients.pem", clients.certificate());
+    access::Security mutual = tls_and_tokens();
+    mutual.certificates->client_ca = folder_ / "clients.pem";
+    access::Security tokens_only;
+    tokens_only.tokens = folder_ / "tokens.txt";
+    session::Limits limits = quick_limits();
+    limits.probe_interval = 1ms;
+    for (const access::Security& security : {tls(), tls_and_tokens(), mutual, tokens_only}) {
+        const auto registry = std::make_shared<metrics::Registry>();
+        const service::GrpcServer server({.host = "localhost", .port = 0}, {channel_.feed()}, limits, security,
+                                         {.registry = registry});
+        std::string page;
+        for (const auto deadline = Clock::now() + kReloadPatience; Clock::now() < deadline;) {
+            page = registry->page().text();
+            if (page.find("fieldcast_self_probe_answers_total 0\n") == std::string::npos) {
+                break;
+            }
+        }
+        EXPECT_THAT(page, Not(HasSubstr("fieldcast_self_probe_answers_total 0\n")));
+        EXPECT_THAT(page, HasSubstr("fieldcast_self_probe_failures_total 0\n"));
+        EXPECT_THAT(page, HasSubstr("fieldcast_serving 1\n"));
+    }
+}
+
 TEST_F(Security, EveryServiceAsksForAToken) {
     const auto server = serve(tls_and_tokens());
     const auto connection = connect(server->port(), trusting(authority_));
