@@ -67,6 +67,7 @@ TEST(ProtocolPage, HasTheLimitsOfTheServer) {
         return number(all) + ", of one peer " + number(peer);
     };
     expect("handshake of TCP, TLS and HTTP/2", seconds(limits.handshake_deadline));
+    expect("connections at the same time", number(limits.max_connections));
     expect("silence", std::string("after ") + seconds(limits.keepalive_interval));
     expect("silence", std::string("within ") + seconds(limits.keepalive_timeout));
     expect("connection without calls", std::string("after ") + seconds(limits.idle_deadline));
