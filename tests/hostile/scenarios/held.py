@@ -10,7 +10,7 @@ import recordings
 from connection import Closed, Connection, Target
 from fieldcast.v1 import light_field_pb2 as v1
 from fieldcast.v1 import types_pb2 as types
-from raw import PREFACE, RawConnection, frame
+from raw import PREFACE, RawConnection, frame, header_frames, literal_field
 from scenario import Bounds, Scenario, Setup
 from session import OPEN, Session
 
@@ -140,6 +140,23 @@ def acknowledgement_flood(field):
                      f"status {session.call.status} after {sent} messages")
 
 
+def metadata_bombs(field):
+    """Calls with 64 KB of metadata, a thousand fields of it, or empty fields without end."""
+    many = b"".join(literal_field(b"bomb-%d" % i, b"y" * 40) for i in range(1000))
+    bombs = [literal_field(b"bomb", b"x" * 60_000), many,
+             literal_field(b"authorization", b"Bearer " + b"z" * 30_000) * 2, literal_field(b"bomb-bin", b"A" * 50_000),
+             literal_field(b"b", b"") * 15_000]
+    sent = 0
+    while field.has_time(5.0):
+        with contextlib.suppress(OSError), RawConnection(field.target) as connection:
+            block = connection.header_block(OPEN)
+            for stream in range(1, 120, 2):
+                if not connection.push(header_frames(stream, block + bombs[stream // 2 % len(bombs)])):
+                    break
+                sent += 1
+    field.expect("bombs were sent", sent > 50, sent)
+
+
 def drain_under_attack(field):
     """TERM while thirty sessions ignore GoingAway and others keep coming."""
     with Connection(field.target) as connection:
@@ -221,6 +238,9 @@ SCENARIOS = [
              Bounds(MANY, log_lines=SESSIONS)),
     Scenario("acknowledgement-flood", 0, "acknowledgements of frames that never were", acknowledgement_flood,
              Bounds(QUIET)),
+    Scenario("metadata-bombs-envoy", 0, "metadata of 60 KB and more, through Envoy", metadata_bombs,
+             Bounds("Envoy's only thread is busy with them: 28 % of the frames came on a machine with far too much work",
+                    share=0.1, gap_frames=90.0), Setup(front="envoy")),
     Scenario("drain", 0, "TERM while thirty sessions ignore GoingAway and others come", drain_under_attack,
              Bounds("sessions take 3 lines, those refused meanwhile are logged up to 26 times", log_lines=3 * 30 + 60),
              Setup(has_honest=False)),
