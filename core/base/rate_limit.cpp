@@ -10,13 +10,13 @@ double RateLimit::left_at(TimePoint now) const {
     return std::min(rate_.burst, left_ + elapsed_s * rate_.per_second);
 }
 
-bool RateLimit::take(TimePoint now) {
+bool RateLimit::take(TimePoint now, double amount) {
     left_ = left_at(now);
     at_ = now;
-    if (left_ < 1.0) {
+    if (left_ < amount) {
         return false;
     }
-    left_ -= 1.0;
+    left_ -= amount;
     return true;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/camera/own_cameras.h"
 
-#include "core/base/log.h"
-
 #include <algorithm>
 #include <exception>
 
@@ -222,12 +220,12 @@ std::shared_ptr<void> OwnCameras::make(Id id, const ChannelSetup& channel, const
     try {
         auto made = channel.make(
             {.feed = feed, .used = [this, id](std::chrono::duration<double> used) { observe(id, used); }});
-        log::info("own camera ready",
-                  {{"channel", channel.info.name}, {"camera", id}, {"seconds", since(begin).count()}});
+        lines_.write(log::Level::kInfo, "own camera ready",
+                     {{"channel", channel.info.name}, {"camera", id}, {"seconds", since(begin).count()}});
         return made;
     } catch (const std::exception& problem) {
-        log::error("own camera failed",
-                   {{"channel", channel.info.name}, {"camera", id}, {"problem", problem.what()}});
+        lines_.write(log::Level::kError, "own camera failed",
+                     {{"channel", channel.info.name}, {"camera", id}, {"problem", problem.what()}});
         feed->set_failed();
         return nullptr;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "core/base/log_quota.h"
 #include "server/camera/admission.h"
 #include "server/feed/feed.h"
 #include "server/metrics/registry.h"
@@ -82,6 +83,7 @@ private:
     metrics::Counter& refused(const std::string& channel, Shortage shortage); ///< counts them
 
     metrics::Registry& registry_;
+    log::Quota lines_{"everybody", log::Quota::kOfEverybody};
     std::condition_variable changed_;
     Guarded<State> state_;
     metrics::Collector collector_;

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/credentials.h"
 
-#include "core/base/guarded.h"
-#include "core/base/log.h"
-#include "core/base/rate_limit.h"
+#include "core/base/log_quota.h"
 #include "server/service/status.h"
 
 #include <grpcpp/security/auth_metadata_processor.h>
@@ -14,10 +12,7 @@ namespace fieldcast::service {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr unsigned kCertificateRefresh_s = 1;
-constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // strangers must not fill the disk
 
 std::string_view view_of(const grpc::string_ref& text) {
     return {text.data(), text.size()};
@@ -56,21 +51,16 @@ public:
             return grpc::Status::OK;
         }
         metrics_.count_denied(identity.error().kind);
-        log(method, identity.error());
+        denials_.write(log::Level::kWarn, "call denied",
+                       {{"method", method.substr(0, 100)}, {"reason", identity.error().message}});
         return to_status(problem_of(identity.error().kind), identity.error().message);
     }
 
 private:
-    void log(std::string_view method, const access::Denial& denial) {
-        if (log_rate_.lock()->take(Clock::now())) {
-            log::warn("call denied", {{"method", method.substr(0, 100)}, {"reason", denial.message}});
-        }
-    }
-
     const access::Gate& gate_;
     ServiceMetrics& metrics_;
     const HealthAccess health_;
-    Guarded<RateLimit> log_rate_{RateLimit(kLogRate)};
+    log::Quota denials_{"everybody", log::Quota::kOfEverybody};
 };
 
 std::shared_ptr<grpc::ServerCredentials> tls_credentials(const access::CertificateFiles& files) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/transport_log.h"
 
-#include "core/base/guarded.h"
-#include "core/base/log.h"
-#include "core/base/rate_limit.h"
+#include "core/base/log_quota.h"
 
 #include <grpc/support/log.h>
 
@@ -11,21 +9,22 @@ namespace fieldcast::service {
 
 namespace {
 
-constexpr RateLimit::Rate kRate{.per_second = 1.0, .burst = 20.0};
+log::Level level_of(gpr_log_severity severity) {
+    switch (severity) {
+    case GPR_LOG_SEVERITY_DEBUG:
+        return log::Level::kDebug;
+    case GPR_LOG_SEVERITY_INFO:
+        return log::Level::kInfo;
+    case GPR_LOG_SEVERITY_ERROR:
+        break;
+    }
+    return log::Level::kWarn;
+}
 
 void write_line(gpr_log_func_args* line) {
-    static Guarded<RateLimit> rate{RateLimit(kRate)};
-    if (!rate.lock()->take(std::chrono::steady_clock::now())) {
-        return;
-    }
-    switch (line->severity) {
-    case GPR_LOG_SEVERITY_DEBUG:
-        return log::debug("transport", {{"message", line->message}});
-    case GPR_LOG_SEVERITY_INFO:
-        return log::info("transport", {{"message", line->message}});
-    case GPR_LOG_SEVERITY_ERROR:
-        return log::warn("transport", {{"message", line->message}});
-    }
+    // Never destroyed: threads of gRPC outlive main.
+    static auto& lines = *new log::Quota("everybody", log::Quota::kOfEverybody);
+    lines.write(level_of(line->severity), "transport", {{"message", line->message}});
 }
 
 } // namespace

@@ -27,6 +27,15 @@ TEST(RateLimit, LetsABurstThroughAndThenTheRate) {
     EXPECT_EQ(taken(limit, kStart + 60s, 20), 5);
 }
 
+TEST(RateLimit, AnEventMayCountAsSeveral) {
+    RateLimit limit({.per_second = 10.0, .burst = 5.0});
+    EXPECT_TRUE(limit.take(kStart, 0.0));
+    EXPECT_TRUE(limit.take(kStart, 4.5));
+    EXPECT_FALSE(limit.take(kStart, 0.6)) << "and takes nothing";
+    EXPECT_TRUE(limit.take(kStart, 0.5));
+    EXPECT_TRUE(limit.take(kStart, 0.0)) << "nothing always goes";
+}
+
 TEST(RateLimit, AverageOverALongTimeIsTheRate) {
     RateLimit limit({.per_second = 7.0, .burst = 3.0});
     int count = 0;
