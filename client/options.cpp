@@ -51,6 +51,7 @@ struct FlagText {
     std::string cache;
     double patience_s = 30.0;
     std::uint32_t quality = 0;
+    std::string max_fps = "0";
     float fov_deg = 0.0F;
     float spacing_m = -1.0F;
     float convergence_m = -1.0F;
@@ -73,8 +74,7 @@ void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
     app.add_option("--anchor", text.anchor, "Where the source is in the grid: lattice or centre")
         ->check(CLI::IsMember({"lattice", "centre"}))
         ->capture_default_str();
-    app.add_option("--max-fps", wish.max_frames_per_second, "Frames per second at most; 0: the channel's")
-        ->check(CLI::NonNegativeNumber)
+    app.add_option("--max-fps", text.max_fps, "Frames per second at most, 0.1 or more; 0: the channel's")
         ->capture_default_str();
 }
 
@@ -227,6 +227,7 @@ void read_text(const FlagText& text, Options& options) {
     options.falls_back_to_views = wish.mode != net::Mode::kViews && contains(text.modes, "views");
     wish.planes = planes_of("--planes", text.planes);
     wish.quality = static_cast<std::uint8_t>(text.quality);
+    wish.max_frames_per_second = rate_bound("--max-fps", text.max_fps);
     wish.codecs.clear();
     for (const std::string& word : text.codecs) {
         wish.codecs.push_back(codec_of("--codec", word));

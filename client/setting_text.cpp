@@ -2,6 +2,7 @@
 #include "client/setting_text.h"
 
 #include "core/base/error.h"
+#include "core/lightfield/frame_rate.h"
 
 #include <array>
 #include <charconv>
@@ -86,7 +87,7 @@ constexpr std::array kSettings{
                 wish.quality = static_cast<std::uint8_t>(number_between(what, value, 1.0, 100.0));
             }},
     Setting{"max-fps", [](const auto& what, const auto& value, auto& wish) {
-                wish.max_frames_per_second = number_between(what, value, 0.0, 1e6);
+                wish.max_frames_per_second = rate_bound(what, value);
             }},
 };
 
@@ -131,7 +132,7 @@ constexpr std::array kBounds{
               wish.min_quality = static_cast<std::uint8_t>(number_between(what, value, 0.0, 100.0));
           }},
     Bound{"fps", [](const auto& what, const auto& value, auto& wish) {
-              wish.min_frames_per_second = number_between(what, value, 0.0, 1000.0);
+              wish.min_frames_per_second = rate_bound(what, value);
           }},
     Bound{"height", [](const auto& what, const auto& value, auto& wish) {
               wish.min_view_height_px = static_cast<std::uint32_t>(number_between(what, value, 0.0, kMaxPlaneSide));
@@ -160,6 +161,14 @@ play::ChangeMoment moment_of(const std::string& flag, const std::string& text) {
 }
 
 } // namespace
+
+float rate_bound(const std::string& what, const std::string& text) {
+    const auto value = number_of(text);
+    if (!value || !is_rate_bound(static_cast<float>(*value))) {
+        throw UserError(what + "=" + text + ": 0, or frames per second from 0.1 on");
+    }
+    return static_cast<float>(*value);
+}
 
 void set_grid(const std::string& what, const std::string& text, net::Wish& wish) {
     const auto grid = parse_grid(text);

@@ -21,6 +21,7 @@ net::AdaptationWish read_adaptation(const std::string& text);
 /// The same values as the flags take. Throw UserError, which begins with `what`.
 void set_grid(const std::string& what, const std::string& text, net::Wish& wish);
 void set_size(const std::string& what, const std::string& text, net::Wish& wish);
+float rate_bound(const std::string& what, const std::string& text); ///< frames per second; 0: no bound
 net::PlaneWish planes_of(const std::string& what, const std::string& word);
 net::Mode mode_of(const std::string& what, const std::string& word);
 codec::CodecId codec_of(const std::string& what, const std::string& word);

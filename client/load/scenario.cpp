@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/scenario.h"
 
+#include "core/lightfield/frame_rate.h"
 #include "core/lightfield/view_grid.h"
 
 #include <charconv>
@@ -53,6 +54,17 @@ Problem read_float(const std::string& text, double low, double high, float& resu
     Problem problem = read_number(text, low, high, number);
     result = static_cast<float>(number);
     return problem;
+}
+
+/// Frames per second; 0: nothing in particular.
+template <class Number> Problem read_rate(const std::string& text, Number& result) {
+    float number = 0.0F;
+    const Problem problem = read_float(text, 0.0, kMaxFps, number);
+    if (!problem.empty() || !is_rate_bound(number)) {
+        return "write 0, or a number from 0.1 to 1000";
+    }
+    result = number;
+    return {};
 }
 
 template <class Value>
@@ -162,8 +174,8 @@ const Setters<Group>& group_setters() {
              return problem;
          }},
         {"max-fps",
-         [](Text text, Group& group) { return read_float(text, 0.0, kMaxFps, group.wish.max_frames_per_second); }},
-        {"due-fps", [](Text text, Group& group) { return read_number(text, 0.0, kMaxFps, group.due_fps); }},
+         [](Text text, Group& group) { return read_rate(text, group.wish.max_frames_per_second); }},
+        {"due-fps", [](Text text, Group& group) { return read_rate(text, group.due_fps); }},
         {"decoding", [](Text text, Group& group) { return read_word(text, decodings, group.decoding); }},
         {"reads-kbit-per-second",
          [](Text text, Group& group) {

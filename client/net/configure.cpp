@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/configure.h"
 
+#include "core/lightfield/frame_rate.h"
 #include "core/wire/convert.h"
 
 #include <algorithm>
@@ -312,7 +313,7 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& as
     agreement.wish = wish;
     agreement.adapted = message.has_adapted() ? std::optional(from_proto(message.adapted())) : std::nullopt;
     const float rate = message.frames_per_second();
-    agreement.frames_per_second = std::isfinite(rate) && rate > 0.0F ? rate : 0.0F;
+    agreement.frames_per_second = is_rate_bound(rate) ? rate : 0.0F;
     return agreement;
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/feed/frame_interval.h"
 
-#include <algorithm>
+#include "core/lightfield/frame_rate.h"
 
 namespace fieldcast::feed {
 
 std::chrono::nanoseconds frame_interval(float frames_per_second) {
-    constexpr double kLongest_s = 86'400.0;
-    const std::chrono::duration<double> seconds(std::min(1.0 / static_cast<double>(frames_per_second), kLongest_s));
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(seconds);
+    const bool is_slow = !(frames_per_second >= kMinFramesPerSecond); // also what is no number
+    const double rate = static_cast<double>(is_slow ? kMinFramesPerSecond : frames_per_second);
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1.0 / rate));
 }
 
 } // namespace fieldcast::feed

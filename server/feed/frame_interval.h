@@ -5,7 +5,7 @@
 
 namespace fieldcast::feed {
 
-/// Time from one frame to the next; a day at most, which fits whatever rate a peer or a file names.
+/// Time from one frame to the next; that of the slowest rate at most, whatever a peer or a file names.
 std::chrono::nanoseconds frame_interval(float frames_per_second);
 
 } // namespace fieldcast::feed

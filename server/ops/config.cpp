@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/host_port.h"
+#include "core/lightfield/frame_rate.h"
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 #include "server/ops/limit_flags.h"
@@ -65,7 +66,7 @@ void check_lattice(const Config& config, Problems& problems) {
     expect(problems, is_side(config.width_px) && is_side(config.height_px), "--size",
            std::to_string(config.width_px) + "x" + std::to_string(config.height_px), "16 to 8192 pixels on each side");
     const float fps = config.frames_per_second;
-    expect(problems, fps > 0.0F && fps <= 240.0F, "--fps", fps, "more than 0, at most 240");
+    expect(problems, is_frame_rate(fps), "--fps", fps, "0.1 to 240");
     const float spacing = config.spacing_m.value_or(0.0F);
     expect(problems, spacing >= 0.0F && spacing <= 1000.0F, "--spacing", spacing, "0 to 1000 metres");
     expect(problems, config.lattice.convergence_m > 0.0F, "--convergence", config.lattice.convergence_m,

@@ -55,7 +55,7 @@ void add_scene_flags(CLI::App& app, FlagText& text, Config& config) {
 
 void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--size", text.size, "Source image, pixels")->group("Light field")->capture_default_str();
-    app.add_option("--fps", config.frames_per_second, "Frames per second at most")
+    app.add_option("--fps", config.frames_per_second, "Frames per second at most, 0.1 to 240")
         ->group("Light field")
         ->capture_default_str();
     app.add_option("--spacing", config.spacing_m,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/recording_flags.h"
 
+#include "core/lightfield/frame_rate.h"
 #include "server/ops/config.h"
 
 #include <CLI/CLI.hpp>
@@ -38,8 +39,8 @@ void check_replays(const Config& config, std::vector<std::string>& problems) {
             problems.push_back("--replay " + replay.name + ": a name has 1 to 64 bytes");
         }
         const float fps = replay.frames_per_second.value_or(1.0F);
-        if (!(fps > 0.0F && fps <= 240.0F)) {
-            problems.push_back("--replay-fps " + std::to_string(fps) + ": more than 0, at most 240");
+        if (!is_frame_rate(fps)) {
+            problems.push_back("--replay-fps " + std::to_string(fps) + ": 0.1 to 240");
             break;
         }
     }
@@ -77,7 +78,7 @@ void add_recording_flags(CLI::App& app, RecordingText& text, Config& config) {
     app.add_option("--replay", text.replays,
                    "FILE or NAME=FILE: a recording as a channel, in a loop; needs no device. May be repeated")
         ->group("Recordings");
-    app.add_option("--replay-fps", config.replay_fps, "Frames per second of replays; default: as recorded")
+    app.add_option("--replay-fps", config.replay_fps, "Frames per second of replays, 0.1 to 240; default: as recorded")
         ->group("Recordings");
     app.add_option("--record", text.records,
                    "FILE or CHANNEL=FILE: records that channel while serving. May be repeated")

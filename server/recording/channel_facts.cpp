@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/channel_facts.h"
 
+#include "core/lightfield/frame_rate.h"
 #include "core/wire/convert.h"
 
 #include "fieldcast/v1/recording.pb.h"
@@ -17,7 +18,6 @@ namespace {
 constexpr std::size_t kMaxCameraBytes = 256;
 constexpr int kMaxForms = 64;
 constexpr int kMaxPlanes = 16;
-constexpr float kMaxFps = 240.0F;
 
 void encoding_to_proto(const codec::Encoding& encoding, v1::RecordedEncoding& message) {
     message.set_codec(wire::to_proto(encoding.codec));
@@ -121,8 +121,8 @@ const char* problem_of(const v1::RecordedChannel& message) {
     if (!(message.fovy_rad() > 0.0F && message.fovy_rad() < std::numbers::pi_v<float>)) {
         return "channel: fovy_rad must lie between 0 and pi";
     }
-    if (!(message.frames_per_second() > 0.0F && message.frames_per_second() <= kMaxFps)) {
-        return "channel: more than 0 and at most 240 frames per second";
+    if (!is_frame_rate(message.frames_per_second())) {
+        return "channel: 0.1 to 240 frames per second";
     }
     if (message.camera().size() > kMaxCameraBytes) {
         return "channel: the camera's name has more than 256 bytes";

@@ -128,6 +128,10 @@ TEST_F(ScenarioTest, RefusesValuesThatMakeNoSense) {
     EXPECT_THAT(in_group("count = 1.5"), HasSubstr(at(2, "count: write a whole number")));
     EXPECT_THAT(in_group("count = [1, 2]"), HasSubstr(at(2, "count: write one value")));
     EXPECT_THAT(in_group("think = nan"), HasSubstr(at(2, "think: write a number")));
+    for (const char* const rate : {"0.004", "1e-30", "-1", "nan", "inf"}) {
+        EXPECT_THAT(in_group("max-fps = " + std::string(rate)), HasSubstr(at(2, "max-fps: write 0, or a number from")));
+        EXPECT_THAT(in_group("due-fps = " + std::string(rate)), HasSubstr(at(2, "due-fps: write 0, or a number from")));
+    }
     EXPECT_THAT(in_group("stay = -1"), HasSubstr(at(2, "stay: write a number")));
     EXPECT_THAT(in_group("mode = \"mesh\""), HasSubstr(at(2, "mode: write one of views, scene, warp")));
     EXPECT_THAT(in_group("reads-kbit-per-second = 0"), HasSubstr(at(2, "reads-kbit-per-second: write a number")));

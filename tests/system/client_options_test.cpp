@@ -122,7 +122,9 @@ TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {
         {"--mode", "magic"},      {"--write", "exr"},                                             // needs mode scene
         {"--fov", "180"},         {"--save", "some"}, {"--frames", "-1"}, {"--tls-ca", "ca.pem"}, // needs --tls
         {"--tls-cert", "c.pem"},                                                                  // needs --tls-key
-        {"--server", "ftp://h:1"}, {"--codec", "gif"}, {"--quality", "0"}, {"--quality", "101"}};
+        {"--server", "ftp://h:1"}, {"--codec", "gif"}, {"--quality", "0"}, {"--quality", "101"},
+        {"--max-fps", "0.004"},    {"--max-fps", "1e-30"}, {"--max-fps", "nan"}, {"--max-fps", "inf"},
+        {"--max-fps", "-1"}};
     for (const auto& arguments : wrong) {
         const Invocation invocation = read(arguments);
         EXPECT_FALSE(invocation.options) << arguments[0] << ' ' << arguments[1];
@@ -161,7 +163,8 @@ TEST(Options, ChangesThatCannotBeReadAreNamed) {
     for (const auto& [text, words] :
          {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid 2"),
           std::pair("3s:colour=red", "keys are grid"), std::pair("3s:quality=101", "quality=101"),
-          std::pair("-1s:grid=2x2", "says when")}) {
+          std::pair("-1s:grid=2x2", "says when"), std::pair("3s:max-fps=0.004", "max-fps=0.004: 0, or frames"),
+          std::pair("3s:max-fps=nan", "max-fps=nan: 0, or frames")}) {
         const Invocation invocation = read({"--change", text});
         EXPECT_FALSE(invocation.options) << text;
         EXPECT_EQ(invocation.exit_code, 2);
@@ -191,6 +194,7 @@ TEST(Options, AdaptationIsOffUnlessAskedFor) {
     EXPECT_EQ(wish.min_rows, 2U);
     EXPECT_EQ(wish.min_cols, 1U);
     EXPECT_EQ(wish.max_queue_delay_ms, 250U);
+    EXPECT_THAT(read({"--adapt", "fps=0.05"}).text, HasSubstr("fps=0.05: 0, or frames"));
     EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("keys are jpeg"));
 }
 

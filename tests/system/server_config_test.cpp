@@ -97,7 +97,7 @@ TEST_F(ConfigFile, DoesNotDoWhatOnlyTheCommandLineMay) {
 
 TEST_F(ConfigFile, FlagsKeepTheirNameInProblems) {
     const auto problems = read(kScene + "fps = 12\n", {"--fps", "0"}).problems;
-    EXPECT_THAT(problems, ElementsAre(HasSubstr("--fps 0: more than 0")));
+    EXPECT_THAT(problems, ElementsAre(HasSubstr("--fps 0: 0.1 to 240")));
 }
 
 TEST_F(ConfigFile, MissingOrBrokenFilesAreProblems) {

@@ -14,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -252,6 +253,16 @@ TEST(Flags, KnowsEveryDenoiser) {
         EXPECT_TRUE(invocation.problems.empty()) << word;
         EXPECT_EQ(invocation.config.settings.denoiser, denoiser) << word;
     }
+}
+
+TEST(Flags, SlowerThanTheSlowestRateIsNamed) {
+    for (const char* const rate : {"0.004", "1e-30", "nan", "inf", "-1"}) {
+        EXPECT_THAT(read({"--scene", kFile, "--fps", rate}).problems, ElementsAre(HasSubstr("0.1 to 240"))) << rate;
+        EXPECT_THAT(read({"--scene", kFile, "--replay", kFile, "--replay-fps", rate}).problems,
+                    Contains(AllOf(HasSubstr("--replay-fps"), HasSubstr("0.1 to 240"))))
+            << rate;
+    }
+    EXPECT_THAT(read({"--scene", kFile, "--fps", "0.1"}).problems, IsEmpty());
 }
 
 TEST(Flags, ReportsAllProblemsAtOnce) {
