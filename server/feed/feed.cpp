@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/feed/feed.h"
 
+#include "server/feed/frame_interval.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -34,14 +36,22 @@ std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_
             add(demand, subscriber.wish);
         }
     }
+    const std::uint64_t of_others = encoded_pixels(demand);
     add(demand, wish);
-    const std::uint64_t pixels = demand.view_pixels();
-    if (!std::holds_alternative<ViewsWish>(wish) || pixels <= info_.max_view_pixels) {
+    const std::uint64_t pixels = encoded_pixels(demand);
+    if (pixels == of_others || pixels <= info_.max_view_pixels) {
         return std::nullopt;
     }
-    return "channel '" + info_.name + "' would render " + std::to_string(pixels) +
+    return "channel '" + info_.name + "' would encode " + std::to_string(pixels) +
            " pixels per frame for all clients, at most " + std::to_string(info_.max_view_pixels) +
-           "; ask for fewer or smaller views or share the lattice of others";
+           "; ask for fewer or smaller views, or for what others get: lattice, codec and quality";
+}
+
+std::uint64_t Feed::encoded_pixels(const Demand& demand) const {
+    const GuardBand& band = info_.guard_band;
+    const std::uint64_t plane = std::uint64_t{info_.source_width_px + band.left_px + band.right_px} *
+                                (info_.source_height_px + band.top_px + band.bottom_px) * info_.source_count;
+    return demand.view_pixels() + demand.repeated_planes() * plane;
 }
 
 tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
@@ -56,6 +66,7 @@ tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Fe
         id = state->next_id++;
         if (state->subscribers.empty()) {
             state->waiting_since = std::chrono::steady_clock::now();
+            state->is_first_due = true;
         }
         state->subscribers.emplace(id, Subscriber{.wish = wish, .callback = std::move(shared_callback)});
     }
@@ -109,6 +120,7 @@ void Feed::publish(const FramePtr& frame) {
     {
         auto state = state_.lock();
         state->waiting_since = std::chrono::steady_clock::now();
+        state->is_first_due = false;
         state->latest = {.frame_id = frame->header.frame_id, .scene_time_ns = frame->header.scene_time_ns};
         if (state->observer) {
             callbacks.push_back(state->observer);
@@ -130,9 +142,13 @@ std::chrono::nanoseconds Feed::waiting_time(std::chrono::steady_clock::time_poin
     if (opener_ != nullptr) {
         return opener_->waiting_time(now);
     }
+    const auto interval = frame_interval(frames_per_second());
     auto state = state_.lock();
-    return state->subscribers.empty() ? std::chrono::nanoseconds(0)
-                                      : std::max(now - state->waiting_since, std::chrono::nanoseconds(0));
+    if (state->subscribers.empty()) {
+        return std::chrono::nanoseconds(0);
+    }
+    const auto due = state->waiting_since + (state->is_first_due ? std::chrono::nanoseconds(0) : interval);
+    return std::max<std::chrono::nanoseconds>(now - due, std::chrono::nanoseconds(0));
 }
 
 std::size_t Feed::subscriber_count() {

@@ -51,7 +51,8 @@ public:
     /// Null: nobody steers the camera of this channel.
     const std::shared_ptr<Steering>& steering() const { return steering_; }
 
-    /// Refused, with a reason that names the limit, if the views of all subscribers would exceed the pixel budget.
+    /// Refused, with a reason that names the limit, if what is encoded for all subscribers would exceed the pixel
+    /// budget. Whoever wants only what others get is never refused.
     static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
                                                              FrameCallback callback);
 
@@ -74,7 +75,7 @@ public:
     float frames_per_second() const { return frames_per_second_; }
     void set_frames_per_second(float rate) { frames_per_second_ = rate; }
 
-    /// How long somebody has been waiting for a frame; 0: nobody is.
+    /// How long somebody has been waiting for a frame that is due; 0: nobody has.
     std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now);
     std::size_t subscriber_count();
 
@@ -95,8 +96,10 @@ private:
         std::uint64_t next_id = 1;
         LatestFrame latest;
         std::chrono::steady_clock::time_point waiting_since; ///< the last frame, or the first subscriber after a pause
+        bool is_first_due = true; ///< a frame is due at once; false: an interval after `waiting_since`
     };
 
+    std::uint64_t encoded_pixels(const Demand& demand) const;
     std::optional<std::string> budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const;
     std::optional<std::string> change(std::uint64_t id, const Wish& wish);
     void set_key_need(std::uint64_t id, KeyNeed need);

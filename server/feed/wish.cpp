@@ -2,6 +2,7 @@
 #include "server/feed/wish.h"
 
 #include <algorithm>
+#include <set>
 
 namespace fieldcast::feed {
 
@@ -55,6 +56,14 @@ bool covers(const std::vector<Wish>& wishes, const Wish& wish) {
            std::ranges::all_of(lattice_positions(views.grid), [&](LatticePosition position) {
                return std::ranges::binary_search(same->positions, position);
            });
+}
+
+std::uint64_t Demand::repeated_planes() const {
+    std::set<PlaneSemantic> semantics;
+    for (const wire::PlaneChoice& choice : planes) {
+        semantics.insert(choice.semantic);
+    }
+    return planes.size() - semantics.size();
 }
 
 std::uint64_t Demand::view_pixels() const {

@@ -50,7 +50,8 @@ struct Demand {
     bool needs_key = false;                ///< and would keep one
 
     bool empty() const { return planes.empty() && views.empty(); }
-    std::uint64_t view_pixels() const; ///< of all views together
+    std::uint64_t view_pixels() const;     ///< of all views together, in each of their encodings
+    std::uint64_t repeated_planes() const; ///< encodings of planes beyond the first one of each plane
 };
 
 /// Widens `demand` so that it covers `wish`.

@@ -35,14 +35,14 @@ void add_limit_flags(CLI::App& app, Config& config) {
     add("--max-opens-per-second-per-peer", limits.max_opens_per_second_per_peer,
         "Sessions that one address may open on average; --max-sessions-per-peer of them at once");
     add("--max-messages-per-second", limits.max_messages_per_second,
-        "Of one session on average, twice as many at once; a Configure counts as 50");
+        "Of one session on average, twice as many at once; a Configure counts as 50, every 128 bytes as one");
     add("--max-poses-per-second", limits.max_poses_per_second,
         "Of one session that steers, on average; as many at once");
     add("--max-own-cameras", config.max_own_cameras, "Of clients that have one each, at the same time");
     add("--max-own-cameras-per-peer", limits.max_own_cameras_per_peer, "Of clients of one address");
     add("--own-camera-budget", config.own_camera_budget_ms,
         "Milliseconds of the device per second that are promised to all own cameras; whoever is alone gets one anyway");
-    add("--max-channel-pixels", config.max_channel_pixels, "Of all views of one frame of a channel, over all clients");
+    add("--max-channel-pixels", config.max_channel_pixels, "That a channel encodes for one frame, over all clients");
     add("--max-pixels-per-peer", limits.max_pixels_per_peer, "Of all views that the server makes for one address");
     add("--max-bytes-in-flight", limits.max_bytes_in_flight, "Unacknowledged, of one session");
     add("--max-bytes-in-flight-per-peer", limits.max_bytes_in_flight_per_peer, "Unacknowledged, of one address");

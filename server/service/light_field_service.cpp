@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/light_field_service.h"
 
-#include "core/base/log.h"
 #include "server/service/credentials.h"
 #include "server/service/messages.h"
 #include "server/service/status.h"
@@ -20,7 +19,8 @@ public:
     void OnDone() override { delete this; }
 };
 
-constexpr RateLimit::Rate kLogRate{.per_second = 1.0, .burst = 20.0}; // refused peers must not fill the disk
+/// Of sessions that come and go. Metrics have all of them.
+constexpr RateLimit::Rate kComingsAndGoings{.per_second = 4.0, .burst = 256.0};
 
 feed::SteeringRight right_of(access::Role role) {
     switch (role) {
@@ -47,7 +47,8 @@ using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 LightFieldService::LightFieldService(std::vector<std::shared_ptr<feed::Feed>> channels, const session::Limits& limits,
                                      const access::Gate& gate, const Observers& observers)
     : channels_(std::move(channels)), limits_(limits), gate_(gate), metrics_(*observers.metrics),
-      recorder_(observers.recorder), sessions_(limits), refusal_log_(RateLimit(kLogRate)),
+      recorder_(observers.recorder), refusals_("everybody", log::Quota::kOfEverybody),
+      comings_("everybody", kComingsAndGoings), sessions_(limits),
       collector_(metrics_.registry().on_collect([this](metrics::Page& page) { collect(page); })) {
     for (const auto& channel : channels_) {
         metrics_.prepare(channel->info().name);
@@ -94,20 +95,19 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     if (!admission) {
         const NoPlace& problem = admission.error();
         metrics_.count_refused(problem.exceeded);
-        if (refusal_log_.lock()->take(std::chrono::steady_clock::now())) {
-            log::warn("session refused", {{"peer", peer}, {"reason", problem.message}});
-        }
+        refusals_.write(log::Level::kWarn, "session refused", {{"peer", peer}, {"reason", problem.message}});
         return new Refuse(to_status(problem.problem, problem.message));
     }
     const std::uint64_t id = admission->id;
     metrics_.count_opened();
-    log::info("session opened", {{"session", id}, {"peer", peer}, {"token", identity->name}});
+    comings_.write(log::Level::kInfo, "session opened", {{"session", id}, {"peer", peer}, {"token", identity->name}});
     const auto stream = Stream::open(*context, {.channels = channels_,
                                                 .limits = limits_,
                                                 .budgets = admission->budgets,
                                                 .steerer = steerer_of(*identity, id),
                                                 .metrics = &metrics_,
                                                 .recorder = recorder_,
+                                                .comings = &comings_,
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
     sessions_.add(id, stream);

@@ -35,8 +35,9 @@ private:
     const access::Gate& gate_;
     ServiceMetrics& metrics_;
     timing::Recorder* const recorder_; ///< null: none
+    log::Quota refusals_;
+    log::Quota comings_; ///< and goings
     SessionTable sessions_;
-    Guarded<RateLimit> refusal_log_;
     metrics::Collector collector_; ///< last: reads the sessions
 };
 

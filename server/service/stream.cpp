@@ -5,6 +5,7 @@
 #include "server/service/messages.h"
 #include "server/service/status.h"
 
+#include <algorithm>
 #include <exception>
 #include <grpcpp/server_context.h>
 
@@ -13,6 +14,13 @@ namespace fieldcast::service {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Of metrics: the mode's name in lower case, without its prefix.
+std::string mode_label(v1::DeliveryMode mode) {
+    std::string label = v1::DeliveryMode_Name(mode).substr(std::string_view("DELIVERY_MODE_").size());
+    std::ranges::transform(label, label.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    return label;
+}
 
 } // namespace
 
@@ -103,7 +111,23 @@ void Stream::OnReadDone(bool ok) {
     pump();
 }
 
+bool Stream::may_read(std::size_t bytes) {
+    auto state = state_.lock();
+    state->session->on_bytes(bytes, Clock::now());
+    return !state->session->is_flooded();
+}
+
+void Stream::end_flood() {
+    end(to_status(Problem::kExhausted, "more messages or bytes than a client may send; limit: " +
+                                           std::to_string(setup_.limits.max_messages_per_second) +
+                                           " messages per second"),
+        session::CloseReason::kFlooding);
+}
+
 void Stream::receive() {
+    if (!may_read(incoming_.Length())) {
+        return end_flood();
+    }
     const auto message = parse_client_message(incoming_);
     incoming_.Clear();
     if (!message) {
@@ -126,28 +150,27 @@ void Stream::receive() {
         end(to_status(Problem::kOurBug, "the server failed; see its log"), session::CloseReason::kFailed);
     }
     if (is_flooded) {
-        end(to_status(Problem::kExhausted, "more messages than a client may send; limit: " +
-                                               std::to_string(setup_.limits.max_messages_per_second) + " per second"),
-            session::CloseReason::kFlooding);
+        end_flood();
     }
 }
 
-void Stream::log_configuration(const session::Session& session) const {
+void Stream::log_configuration(session::Session& session) const {
     const auto& configuration = session.configuration();
     if (!configuration) {
-        return log::info("configuration refused", {{"session", setup_.id}});
+        return session.lines().write(log::Level::kInfo, "configuration refused", {{"session", setup_.id}});
     }
     const wire::ViewSet& set = configuration->view_set;
-    log::info("session configured", {{"session", setup_.id},
-                                     {"epoch", session.epoch()},
-                                     {"channel", configuration->feed->info().name},
-                                     {"mode", v1::DeliveryMode_Name(configuration->mode)},
-                                     {"rows", set.grid.rows},
-                                     {"cols", set.grid.cols},
-                                     {"width_px", set.width_px},
-                                     {"height_px", set.height_px},
-                                     {"max_fps", configuration->frames_per_second},
-                                     {"adapted", session.adapted_level()}});
+    session.lines().write(log::Level::kInfo, "session configured",
+                        {{"session", setup_.id},
+                         {"epoch", session.epoch()},
+                         {"channel", configuration->feed->info().name},
+                         {"mode", v1::DeliveryMode_Name(configuration->mode)},
+                         {"rows", set.grid.rows},
+                         {"cols", set.grid.cols},
+                         {"width_px", set.width_px},
+                         {"height_px", set.height_px},
+                         {"max_fps", configuration->frames_per_second},
+                         {"adapted", session.adapted_level()}});
 }
 
 void Stream::take_frame(const feed::FramePtr& frame) {
@@ -197,7 +220,7 @@ SessionFacts Stream::facts() {
     if (const auto& configuration = state->session->configuration()) {
         const ViewGrid& grid = configuration->view_set.grid;
         facts.channel = configuration->feed->info().name;
-        facts.mode = configuration->mode == v1::DELIVERY_MODE_SCENE ? "scene" : "views";
+        facts.mode = mode_label(configuration->mode);
         facts.grid = std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
     }
     return facts;
@@ -278,18 +301,19 @@ void Stream::OnDone() {
 void Stream::log_closed(const session::SessionCounts& counts, session::CloseReason reason) const {
     using session::DropReason;
     const auto drops = [&](DropReason drop) { return counts.drops.of(drop); };
-    log::info("session closed", {{"session", setup_.id},
-                                 {"reason", to_text(reason)},
-                                 {"frames", counts.frames_sent},
-                                 {"bytes", counts.bytes_sent},
-                                 {"failed_frames", counts.frames_failed},
-                                 {"dropped_sending", drops(DropReason::kSending)},
-                                 {"dropped_no_credit", drops(DropReason::kNoCredit)},
-                                 {"dropped_rate_cap", drops(DropReason::kRateCap)},
-                                 {"dropped_reconfigured", drops(DropReason::kReconfigured)},
-                                 {"dropped_leaving", drops(DropReason::kLeaving)},
-                                 {"dropped_no_key_frame", drops(DropReason::kNoKeyFrame)},
-                                 {"dropped_no_budget", drops(DropReason::kNoBudget)}});
+    setup_.comings->write(log::Level::kInfo, "session closed",
+                          {{"session", setup_.id},
+                           {"reason", to_text(reason)},
+                           {"frames", counts.frames_sent},
+                           {"bytes", counts.bytes_sent},
+                           {"failed_frames", counts.frames_failed},
+                           {"dropped_sending", drops(DropReason::kSending)},
+                           {"dropped_no_credit", drops(DropReason::kNoCredit)},
+                           {"dropped_rate_cap", drops(DropReason::kRateCap)},
+                           {"dropped_reconfigured", drops(DropReason::kReconfigured)},
+                           {"dropped_leaving", drops(DropReason::kLeaving)},
+                           {"dropped_no_key_frame", drops(DropReason::kNoKeyFrame)},
+                           {"dropped_no_budget", drops(DropReason::kNoBudget)}});
 }
 
 } // namespace fieldcast::service

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/guarded.h"
+#include "core/base/log_quota.h"
 #include "core/timing/recorder.h"
 #include "server/service/service_metrics.h"
 #include "server/session/session.h"
@@ -20,7 +21,7 @@ using RawReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 /// What one session holds at a moment.
 struct SessionFacts {
     std::string channel; ///< empty: not configured yet
-    std::string mode;    ///< "views", "scene"; empty: not configured yet
+    std::string mode;    ///< "views", "scene", "warp"; empty: not configured yet
     std::string grid;    ///< "4x4"; empty: not configured yet
     std::uint32_t frames_in_flight = 0;
     std::uint64_t bytes_in_flight = 0;
@@ -38,6 +39,7 @@ public:
         feed::Steerer steerer;                      ///< what it may do with cameras
         ServiceMetrics* metrics = nullptr;          ///< must outlive the stream
         timing::Recorder* recorder = nullptr;       ///< of frame timings; null: none; must outlive the stream
+        log::Quota* comings = nullptr;              ///< for the line about the end; must outlive the stream
         std::uint64_t id = 0;                       ///< of the session, for the log
         std::function<void(std::uint64_t)> on_done; ///< called once, last, with `id`
     };
@@ -86,6 +88,8 @@ private:
     void begin();
     void pump();
     Actions decide(session::TimePoint now);
+    bool may_read(std::size_t bytes); ///< of a message that has come
+    void end_flood();
     void receive();
     void record_timings();
     void take_frame(const feed::FramePtr& frame);
@@ -93,7 +97,7 @@ private:
     static session::CloseReason close_reason(const State& state);
     bool pin_if_overdue(session::TimePoint now);
     void cut();
-    void log_configuration(const session::Session& session) const;
+    void log_configuration(session::Session& session) const;
     void log_closed(const session::SessionCounts& counts, session::CloseReason reason) const;
 
     grpc::CallbackServerContext& context_;

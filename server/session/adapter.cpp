@@ -2,6 +2,7 @@
 #include "server/session/adapter.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace fieldcast::session {
 
@@ -22,13 +23,13 @@ milliseconds max_queue_delay(const v1::Adaptation& bounds) {
 
 void Adapter::configured(const v1::Configure& wanted, const Configuration& granted) {
     controller_.reset();
-    rungs_.clear();
+    ladder_.reset();
     if (!wanted.has_adaptation()) {
         return;
     }
-    rungs_ = make_ladder(wanted, granted);
+    ladder_.emplace(wanted, granted);
     std::vector<double> costs;
-    for (const Rung& rung : rungs_) {
+    for (const Rung& rung : ladder_->rungs()) {
         costs.push_back(rung.cost);
     }
     controller_.emplace(std::move(costs), max_queue_delay(wanted.adaptation()));
@@ -61,7 +62,7 @@ v1::Adapted Adapter::to_message(const LevelChange& change) const {
     message.set_reason(is_down ? v1::ADAPTATION_REASON_QUEUE_DELAY : v1::ADAPTATION_REASON_RECOVERED);
     message.set_queue_delay_ms(static_cast<std::uint32_t>(std::max<std::int64_t>(change.queue_delay.count(), 0)));
     message.set_delivered_bytes_per_second(change.delivered_bytes_per_second);
-    message.set_change(change.level == 0 ? "as asked for" : rung(change.level).change);
+    message.set_change(ladder_->change(rung(change)));
     return message;
 }
 

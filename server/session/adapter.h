@@ -5,7 +5,6 @@
 #include "server/session/level_controller.h"
 
 #include <optional>
-#include <vector>
 
 namespace fieldcast::session {
 
@@ -30,8 +29,8 @@ public:
     /// The change that is due, at most one per call.
     std::optional<LevelChange> due(TimePoint now);
 
-    /// The rung of a change, which stays until `configured`.
-    const Rung& rung(std::size_t level) const { return rungs_.at(level); }
+    /// What to grant for a change.
+    v1::Configure configure(const LevelChange& change) const { return ladder_->configure(rung(change)); }
 
     /// The change that `due` returned was not possible.
     void refused() { controller_->refused(); }
@@ -42,9 +41,11 @@ public:
     std::size_t level() const { return controller_ ? controller_->level() : 0; }
 
 private:
+    const Rung& rung(const LevelChange& change) const { return ladder_->rungs()[change.level]; }
+
     LinkMeter meter_; ///< goes on over configurations: the connection is the same
-    std::vector<Rung> rungs_;
-    std::optional<LevelController> controller_; ///< unset: the client does not want changes
+    std::optional<Ladder> ladder_; ///< unset: the client does not want changes
+    std::optional<LevelController> controller_; ///< set with `ladder_`
     std::uint32_t epoch_ = 0; ///< of the frame begun last; samples of older ones say nothing about this rung
 };
 

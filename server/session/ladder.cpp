@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/ladder.h"
 
+#include "server/session/quality_rungs.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
+#include <type_traits>
 
 namespace fieldcast::session {
+
+static_assert(std::is_trivially_copyable_v<Rung>, "rungs are many: they own nothing");
 
 namespace {
 
@@ -16,93 +19,97 @@ constexpr double kJpegShareOfViews = 0.15;
 constexpr double kJpegShareOfPlanes = 0.5; // depth, normal, id and material stay as they are
 constexpr double kQualityShare = 0.7;
 constexpr double kSizeStep = 2.0 / 3.0;
-constexpr std::uint32_t kQualityStep = 20;
 
-bool has_views(const Configuration& granted) {
-    return granted.mode == v1::DELIVERY_MODE_VIEWS;
-}
-
-std::span<const v1::PlaneSemantic> lossy_planes(const Configuration& granted) {
-    static constexpr std::array kViews{v1::PLANE_SEMANTIC_COLOUR};
-    static constexpr std::array kSource{v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR};
-    static constexpr std::array kTotal{v1::PLANE_SEMANTIC_TOTAL_LIGHT};
-    if (has_views(granted)) {
-        return kViews;
+std::vector<wire::PlaneChoice> choices_of(const feed::Wish& wish) {
+    if (const auto* views = std::get_if<feed::ViewsWish>(&wish)) {
+        return {{.semantic = PlaneSemantic::kColour, .encoding = views->format.encoding}};
     }
-    const auto& choices = std::get<feed::PlanesWish>(granted.wish).choices;
-    return choices.front().semantic == PlaneSemantic::kTotalLight ? std::span<const v1::PlaneSemantic>(kTotal)
-                                                                  : std::span<const v1::PlaneSemantic>(kSource);
+    return std::get<feed::PlanesWish>(wish).choices;
 }
 
-/// Encoding of the planes that may become lossy.
-codec::Encoding encoding_of(const Configuration& granted) {
-    if (const auto* views = std::get_if<feed::ViewsWish>(&granted.wish)) {
-        return views->format.encoding;
-    }
-    return std::get<feed::PlanesWish>(granted.wish).choices.front().encoding;
+/// The planes of a configuration, whatever its mode, that JPEG can carry.
+std::vector<wire::PlaneChoice> pictures_of(const Configuration& granted) {
+    std::vector<wire::PlaneChoice> choices = choices_of(granted.wish);
+    std::erase_if(choices, [](const wire::PlaneChoice& choice) {
+        return !codec::fits(codec::CodecId::kJpeg, wire::format_of(choice));
+    });
+    return choices;
 }
 
-/// JPEG of that quality for those planes, in front of everything else that was said about them.
-void set_jpeg(v1::Configure& wanted, std::span<const v1::PlaneSemantic> planes, std::uint32_t quality) {
-    for (const v1::PlaneSemantic semantic : planes) {
-        const auto same = [&](const v1::CodecPreference& p) { return p.semantic() == semantic; };
-        const auto found = std::ranges::find_if(*wanted.mutable_codecs(), same);
-        v1::CodecPreference& preference = found != wanted.mutable_codecs()->end() ? *found : *wanted.add_codecs();
-        preference.set_semantic(semantic);
-        preference.clear_codecs();
-        preference.add_codecs(v1::CODEC_JPEG);
-        preference.set_quality(quality);
-    }
+bool is_lossy(const wire::PlaneChoice& choice) {
+    return codec::is_lossy(choice.encoding.codec);
 }
+
+template <class Numbers> bool contains(const Numbers& numbers, int number) {
+    return std::ranges::find(numbers, number) != numbers.end();
+}
+
+/// That codec and quality for that plane, instead of what was said about it.
+void set_codec(v1::Configure& wanted, PlaneSemantic plane, v1::Codec codec, std::uint8_t quality) {
+    const v1::PlaneSemantic semantic = wire::to_proto(plane);
+    const auto same = [&](const v1::CodecPreference& p) { return p.semantic() == semantic; };
+    const auto found = std::ranges::find_if(*wanted.mutable_codecs(), same);
+    v1::CodecPreference& preference = found != wanted.mutable_codecs()->end() ? *found : *wanted.add_codecs();
+    preference.set_semantic(semantic);
+    preference.clear_codecs();
+    preference.add_codecs(codec);
+    preference.set_quality(quality);
+}
+
+} // namespace
 
 /// Builds rungs, each on the one before.
-class Builder {
+class LadderBuilder {
 public:
-    Builder(const v1::Configure& wanted, const Configuration& granted)
-        : granted_(granted), bounds_(wanted.adaptation()), rungs_{Rung{.wanted = wanted, .cost = 1.0, .change = ""}} {}
+    LadderBuilder(const v1::Adaptation& bounds, const Configuration& granted, Ladder& ladder)
+        : granted_(granted), bounds_(bounds), ladder_(ladder), rungs_(ladder.rungs_),
+          has_views_(granted.mode == v1::DELIVERY_MODE_VIEWS) {}
 
-    std::vector<Rung> build() {
+    void build() {
+        rungs_.push_back(Rung{});
         add_codec();
         add_qualities();
         add_rates();
-        if (has_views(granted_)) {
+        if (has_views_) {
             add_sizes();
             add_grids();
             add_scene();
         }
-        return std::move(rungs_);
     }
 
 private:
-    Rung& add(double share, std::string change) {
+    Rung& add(Rung::Step step, double share) {
         Rung rung = rungs_.back();
         rung.cost *= share;
-        rung.change = std::move(change);
-        return rungs_.emplace_back(std::move(rung));
+        rung.step = step;
+        return rungs_.emplace_back(rung);
     }
 
-    bool allows_jpeg() const {
-        return std::ranges::find(bounds_.codecs(), static_cast<int>(v1::CODEC_JPEG)) != bounds_.codecs().end();
-    }
+    bool allows_jpeg() const { return contains(bounds_.codecs(), v1::CODEC_JPEG); }
 
     void add_codec() {
-        const codec::Encoding now = encoding_of(granted_);
-        quality_ = now.quality;
-        if (codec::is_lossy(now.codec) || !allows_jpeg()) {
+        const std::vector<wire::PlaneChoice>& pictures = ladder_.pictures_;
+        const auto lossy = std::ranges::find_if(pictures, is_lossy);
+        quality_ = lossy == pictures.end() ? std::uint8_t{0} : lossy->encoding.quality;
+        if (std::ranges::all_of(pictures, is_lossy) || !allows_jpeg()) {
             return;
         }
-        quality_ = granted_.feed->info().lossy_quality;
-        Rung& rung = add(has_views(granted_) ? kJpegShareOfViews : kJpegShareOfPlanes,
-                         "JPEG of quality " + std::to_string(quality_));
-        set_jpeg(rung.wanted, lossy_planes(granted_), quality_);
+        quality_ = quality_ > 0 ? quality_ : granted_.feed->info().lossy_quality;
+        Rung& rung = add(Rung::Step::kCodec, has_views_ ? kJpegShareOfViews : kJpegShareOfPlanes);
+        rung.is_jpeg = true;
+        rung.quality = quality_;
     }
 
     void add_qualities() {
-        const std::uint32_t smallest = std::min<std::uint32_t>(bounds_.min_quality(), codec::kMaxQuality);
-        while (quality_ > 0 && smallest > 0 && quality_ > smallest) {
-            quality_ = std::max(smallest, quality_ > kQualityStep ? quality_ - kQualityStep : 1);
-            set_jpeg(add(kQualityShare, "quality " + std::to_string(quality_)).wanted, lossy_planes(granted_),
-                     quality_);
+        const std::uint32_t smallest = bounds_.min_quality();
+        if (smallest == 0) {
+            return;
+        }
+        for (auto next = kQualityRungs.rbegin(); next != kQualityRungs.rend() && *next >= smallest; ++next) {
+            if (*next < quality_) {
+                quality_ = *next;
+                add(Rung::Step::kQuality, kQualityShare).quality = quality_;
+            }
         }
     }
 
@@ -112,7 +119,7 @@ private:
         float rate = granted_.frames_per_second;
         for (int i = 0; i < kHalvings && smallest > 0.0F && rate / 2.0F >= smallest; ++i) {
             rate /= 2.0F;
-            add(0.5, "1/" + std::to_string(2 << i) + " of the frames").wanted.set_max_frames_per_second(rate);
+            add(Rung::Step::kRate, 0.5).rate_divisor = static_cast<std::uint8_t>(2 << i);
         }
     }
 
@@ -125,18 +132,16 @@ private:
             const std::uint32_t before = height;
             height = std::max(smallest, next);
             const double scale = static_cast<double>(height) / set.height_px;
-            const auto width = std::max(1U, static_cast<std::uint32_t>(std::lround(set.width_px * scale)));
             const double share = static_cast<double>(height) / before;
-            Rung& rung = add(share * share, "views of " + std::to_string(width) + "x" + std::to_string(height));
-            rung.wanted.set_view_width_px(width);
-            rung.wanted.set_view_height_px(height);
+            Rung& rung = add(Rung::Step::kSize, share * share);
+            rung.width_px = std::max(1U, static_cast<std::uint32_t>(std::lround(set.width_px * scale)));
+            rung.height_px = height;
         }
     }
 
     void add_grids() {
-        const ViewGrid& grid = granted_.view_set.grid;
-        std::uint32_t rows = grid.rows;
-        std::uint32_t cols = grid.cols;
+        std::uint32_t rows = granted_.view_set.grid.rows;
+        std::uint32_t cols = granted_.view_set.grid.cols;
         const std::uint32_t min_rows = bounds_.min_rows();
         const std::uint32_t min_cols = bounds_.min_cols();
         const auto fewer = [](std::uint32_t count) { return count - std::max(1U, count / 6); };
@@ -144,17 +149,15 @@ private:
             const double before = static_cast<double>(rows) * cols;
             rows = rows > min_rows ? std::max(min_rows, fewer(rows)) : rows;
             cols = cols > min_cols ? std::max(min_cols, fewer(cols)) : cols;
-            Rung& rung = add(static_cast<double>(rows) * cols / before,
-                             std::to_string(rows) + "x" + std::to_string(cols) + " views");
-            wire::to_proto(grid, *rung.wanted.mutable_grid()); // spacing and anchor as granted
-            rung.wanted.mutable_grid()->set_rows(rows);
-            rung.wanted.mutable_grid()->set_cols(cols);
+            Rung& rung = add(Rung::Step::kGrid, static_cast<double>(rows) * cols / before);
+            rung.rows = rows;
+            rung.cols = cols;
         }
     }
 
     /// The client makes all views that it asked for by itself. Helps where two planes are less than the views were.
     void add_scene() {
-        if (std::ranges::find(bounds_.modes(), static_cast<int>(v1::DELIVERY_MODE_SCENE)) == bounds_.modes().end()) {
+        if (!contains(bounds_.modes(), v1::DELIVERY_MODE_SCENE)) {
             return;
         }
         const feed::ChannelInfo& channel = granted_.feed->info();
@@ -163,41 +166,91 @@ private:
         const double planes = kIlluminationPlanes * channel.source_count * channel.source_width_px *
                               static_cast<double>(channel.source_height_px);
         const double views = static_cast<double>(set.grid.view_count()) * set.width_px * set.height_px;
-        const Rung& before = rungs_.back();
-        const Rung& first = rungs_.front();
+        const Rung before = rungs_.back();
         const double encoding = quality_ > 0 ? kJpegShareOfViews : 1.0;
-        const double rate =
-            before.wanted.max_frames_per_second() > 0.0F
-                ? static_cast<double>(before.wanted.max_frames_per_second() / granted_.frames_per_second)
-                : 1.0;
-        const double cost = planes / views * encoding * std::min(rate, 1.0);
+        const double cost = planes / views * encoding / before.rate_divisor;
         if (cost >= before.cost) {
             return;
         }
-        Rung rung = first;
-        rung.wanted.set_max_frames_per_second(before.wanted.max_frames_per_second());
-        rung.wanted.clear_modes();
-        rung.wanted.add_modes(v1::DELIVERY_MODE_SCENE);
-        rung.wanted.set_planes(v1::PLANE_SET_ILLUMINATION);
-        if (quality_ > 0) {
-            static constexpr std::array kSource{v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR};
-            set_jpeg(rung.wanted, kSource, quality_);
-        }
-        rung.cost = cost;
-        rung.change = "mode SCENE";
-        rungs_.push_back(std::move(rung));
+        rungs_.push_back({.cost = cost,
+                          .step = Rung::Step::kMode,
+                          .is_jpeg = before.is_jpeg || (quality_ > 0 && allows_jpeg()),
+                          .is_scene = true,
+                          .quality = quality_,
+                          .rate_divisor = before.rate_divisor});
     }
 
     const Configuration& granted_;
     const v1::Adaptation& bounds_;
-    std::uint32_t quality_ = 0; ///< of JPEG on the last rung; 0: it is lossless
-    std::vector<Rung> rungs_;
+    const Ladder& ladder_;
+    std::vector<Rung>& rungs_;
+    const bool has_views_;
+    std::uint8_t quality_ = 0; ///< of lossy planes on the last rung; 0: all are lossless
 };
 
-} // namespace
+Ladder::Ladder(const v1::Configure& wanted, const Configuration& granted)
+    : wanted_(wanted), grid_(granted.view_set.grid), frames_per_second_(granted.frames_per_second),
+      pictures_(pictures_of(granted)) {
+    wanted_.clear_adaptation();
+    wanted_.clear_resume_token();
+    LadderBuilder(wanted.adaptation(), granted, *this).build();
+}
 
-std::vector<Rung> make_ladder(const v1::Configure& wanted, const Configuration& granted) {
-    return Builder(wanted, granted).build();
+v1::Configure Ladder::configure(const Rung& rung) const {
+    v1::Configure wanted = wanted_;
+    if (rung.rate_divisor > 1) {
+        wanted.set_max_frames_per_second(frames_per_second_ / static_cast<float>(rung.rate_divisor));
+    }
+    if (rung.is_scene) {
+        wanted.clear_modes();
+        wanted.add_modes(v1::DELIVERY_MODE_SCENE);
+        wanted.set_planes(v1::PLANE_SET_ILLUMINATION);
+        for (const PlaneSemantic plane : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {
+            if (rung.is_jpeg) {
+                set_codec(wanted, plane, v1::CODEC_JPEG, rung.quality);
+            }
+        }
+        return wanted;
+    }
+    for (const wire::PlaneChoice& picture : pictures_) {
+        const codec::Encoding granted = picture.encoding;
+        if (rung.quality > 0 && is_lossy(picture)) {
+            set_codec(wanted, picture.semantic, wire::to_proto(granted.codec), std::min(rung.quality, granted.quality));
+        } else if (rung.is_jpeg) {
+            set_codec(wanted, picture.semantic, v1::CODEC_JPEG, rung.quality);
+        }
+    }
+    if (rung.height_px > 0) {
+        wanted.set_view_width_px(rung.width_px);
+        wanted.set_view_height_px(rung.height_px);
+    }
+    if (rung.rows > 0) {
+        wire::to_proto(grid_, *wanted.mutable_grid());
+        wanted.mutable_grid()->set_rows(rung.rows);
+        wanted.mutable_grid()->set_cols(rung.cols);
+    }
+    return wanted;
+}
+
+std::string Ladder::change(const Rung& rung) const {
+    const auto product = [](std::uint32_t a, std::uint32_t b) { return std::to_string(a) + "x" + std::to_string(b); };
+    switch (rung.step) {
+    case Rung::Step::kNone:
+        break;
+    case Rung::Step::kCodec:
+        return "JPEG of quality " + std::to_string(rung.quality);
+    case Rung::Step::kQuality:
+        return "quality " + std::to_string(rung.quality);
+    case Rung::Step::kRate:
+        return "1/" + std::to_string(rung.rate_divisor) + " of the frames";
+    case Rung::Step::kSize:
+        return "views of " + product(rung.width_px, rung.height_px);
+    case Rung::Step::kGrid:
+        return product(rung.rows, rung.cols) + " views";
+    case Rung::Step::kMode:
+        return "mode SCENE";
+    }
+    return "as asked for";
 }
 
 } // namespace fieldcast::session

@@ -39,10 +39,13 @@ struct Limits {
 };
 
 /// A Configure counts as so many messages: it changes what is rendered.
-inline constexpr int kConfigureWeight = 50;
+inline constexpr double kConfigureWeight = 50.0;
 
-/// Largest message of a client, bytes. A Configure is below 1 KiB.
-inline constexpr int kMaxClientMessageBytes = 64 << 10;
+/// So many whole bytes of a message count as one message more.
+inline constexpr std::size_t kBytesPerMessage = 128;
+
+/// Largest message of a client, bytes: more than twice a Configure in which every field is as large as it may be.
+inline constexpr int kMaxClientMessageBytes = 8 << 10;
 
 /// Answers waiting to be sent; beyond, the client is not read from.
 inline constexpr std::size_t kMaxQueuedAnswers = 16;

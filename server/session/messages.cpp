@@ -26,6 +26,7 @@ void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const fee
         plane.set_semantic(wire::to_proto(choice.semantic));
         plane.set_format(wire::to_proto(wire::format_of(choice)));
         plane.set_codec(wire::to_proto(choice.encoding.codec));
+        plane.set_quality(choice.encoding.quality);
         const glm::uvec2 size = largest_plane(choice.semantic, channel);
         plane.set_width_px(size.x);
         plane.set_height_px(size.y);
@@ -37,6 +38,7 @@ void add_planes(v1::Configured& message, const feed::ViewsWish& wish, const feed
     plane.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
     plane.set_format(v1::PLANE_FORMAT_RGB8);
     plane.set_codec(wire::to_proto(wish.format.encoding.codec));
+    plane.set_quality(wish.format.encoding.quality);
     plane.set_width_px(wish.format.width_px);
     plane.set_height_px(wish.format.height_px);
 }

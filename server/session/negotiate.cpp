@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/negotiate.h"
 
+#include "core/lightfield/frame_rate.h"
+#include "server/session/quality_rungs.h"
 #include "server/session/recorded.h"
 
 #include <algorithm>
@@ -160,6 +162,12 @@ Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, Pl
                       " is supported; " + v1::PlaneFormat_Name(wire::to_proto(usual)) + " is");
 }
 
+/// A recording has the qualities that it has; channels that encode keep to few.
+std::uint8_t choose_quality(std::uint32_t asked, const feed::ChannelInfo& channel) {
+    const bool is_recorded = !channel.recorded.empty() && asked != 0;
+    return is_recorded ? static_cast<std::uint8_t>(asked) : quality_rung(asked, channel.lossy_quality);
+}
+
 /// The first codec wanted for that plane that we have, at the quality wanted.
 Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemantic semantic,
                                         const feed::ChannelInfo& channel) {
@@ -174,8 +182,7 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
     for (const int number : preference->codecs()) {
         const auto codec = wire::from_proto(static_cast<v1::Codec>(number));
         if (codec && codec::fits(*codec, wire::wire_format(semantic))) {
-            const auto asked = static_cast<std::uint8_t>(preference->quality());
-            const std::uint8_t quality = asked != 0 ? asked : channel.lossy_quality;
+            const std::uint8_t quality = choose_quality(preference->quality(), channel);
             return codec::Encoding{*codec, codec::is_lossy(*codec) ? quality : std::uint8_t{0}};
         }
     }
@@ -252,8 +259,13 @@ Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, const feed::ChannelI
 
 Chosen<float> choose_rate(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
     const float asked = wanted.max_frames_per_second();
-    if (!std::isfinite(asked) || asked < 0.0F) {
-        return invalid("max_frames_per_second", text(asked) + " asked, finite and not negative allowed");
+    const float least = wanted.adaptation().min_frames_per_second();
+    for (const auto& [field, rate] :
+         {std::pair("max_frames_per_second", asked), std::pair("adaptation.min_frames_per_second", least)}) {
+        if (!is_rate_bound(rate)) {
+            return invalid(field, text(rate) + " asked, 0 or a finite number from " + text(kMinFramesPerSecond) +
+                                      " on allowed");
+        }
     }
     return asked == 0.0F ? channel.frames_per_second : std::min(asked, channel.frames_per_second);
 }

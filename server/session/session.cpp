@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/session.h"
 
+#include "server/feed/frame_interval.h"
+
 #include <algorithm>
 #include <array>
 
@@ -34,10 +36,10 @@ Session::Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits
       messages_({.per_second = limits.max_messages_per_second, .burst = 2.0 * limits.max_messages_per_second}),
       next_heartbeat_(now + limits.heartbeat_interval),
       configure_by_(now + limits.configure_deadline),
-      steering_(std::move(steerer), limits.max_poses_per_second) {}
+      lines_(steerer.name), steering_(std::move(steerer), limits.max_poses_per_second, lines_) {}
 
 void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
-    is_flooded_ = is_flooded_ || is_too_much(message, now);
+    is_flooded_ = is_flooded_ || !messages_.take(now, message.has_configure() ? kConfigureWeight : 1.0);
     if (is_flooded_) {
         return;
     }
@@ -65,13 +67,8 @@ void Session::on_message(const v1::ClientMessage& message, TimePoint now) {
     }
 }
 
-bool Session::is_too_much(const v1::ClientMessage& message, TimePoint now) {
-    for (int i = message.has_configure() ? kConfigureWeight : 1; i > 0; --i) {
-        if (!messages_.take(now)) {
-            return true;
-        }
-    }
-    return false;
+void Session::on_bytes(std::size_t size, TimePoint now) {
+    is_flooded_ = is_flooded_ || !messages_.take(now, static_cast<double>(size / kBytesPerMessage));
 }
 
 void Session::end() {
@@ -126,8 +123,7 @@ bool Session::is_too_soon(TimePoint now) {
     if (fps >= configuration_->feed->info().frames_per_second) {
         return false;
     }
-    const auto interval =
-        std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(1.0 / static_cast<double>(fps)));
+    const TimePoint::duration interval = feed::frame_interval(fps);
     if (now + interval / 4 < next_frame_due_) { // a quarter: frames of the channel are not evenly spaced
         return true;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/log_quota.h"
 #include "core/base/rate_limit.h"
 #include "server/session/adapter.h"
 #include "server/session/budget.h"
@@ -28,6 +29,8 @@ public:
     Session(std::vector<std::shared_ptr<feed::Feed>> channels, const Limits& limits, feed::FrameCallback on_frame,
             TimePoint now, const PeerBudgets& budgets = {}, feed::Steerer steerer = {});
 
+    /// The bytes of a message have come. They count before anybody reads them.
+    void on_bytes(std::size_t size, TimePoint now);
     void on_message(const v1::ClientMessage& message, TimePoint now);
     void on_frame(const feed::FramePtr& frame, TimePoint now);
 
@@ -50,6 +53,9 @@ public:
     /// Steps that the server has taken away from what was asked for, because of the connection.
     std::size_t adapted_level() const { return adapter_.level(); }
 
+    /// For what the client causes to be logged.
+    log::Quota& lines() { return lines_; }
+
     /// When its frames were where; nothing unless enabled.
     FrameTimings& timings() { return timings_; }
 
@@ -62,7 +68,7 @@ public:
     const Credits& credits() const { return credits_; }
     std::optional<CloseReason> close_reason() const { return close_reason_; } ///< set by go_away
 
-    /// The client sends more messages than it may; end the stream.
+    /// The client sends more than it may; end the stream.
     bool is_flooded() const { return is_flooded_; }
 
 private:
@@ -80,6 +86,7 @@ private:
 
     void handle(const v1::Configure& wanted, TimePoint now);
     void handle(const v1::FrameAck& ack, TimePoint now);
+    void refuse(const Refusal& refusal, std::uint32_t request_id);
     v1::Configured& begin_epoch(Configuration chosen); ///< the answer, which is queued
     void adapt(TimePoint now);
     std::optional<Refusal> admit(Configuration& wanted); ///< on success its feed is where the frames come from
@@ -88,7 +95,6 @@ private:
     void count_camera(); ///< among those of its peer
     std::optional<Refusal> change_own_feed(Configuration& wanted);
     void close_feeds(); ///< no frames from now on
-    bool is_too_much(const v1::ClientMessage& message, TimePoint now);
     void drop_old_configuration();
     bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
 
@@ -128,6 +134,7 @@ private:
     TimePoint configure_by_;
     TimePoint next_frame_due_{}; ///< by the client's rate cap
     SessionCounts counts_;
+    log::Quota lines_;
     SteeringDesk steering_;
     FrameTimings timings_;
     feed::OwnFeed own_feed_; ///< none unless it has a camera of its own

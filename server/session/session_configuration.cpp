@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a session comes by its configuration, and changes it.
+#include "server/session/field_limits.h"
 #include "server/session/session.h"
 
 #include <algorithm>
@@ -23,20 +24,31 @@ Refusal exhausted(std::string field, std::string message) {
     return {.reason = v1::REFUSAL_REASON_EXHAUSTED, .field = std::move(field), .message = std::move(message)};
 }
 
+/// What a client changes about it when the channel encodes as much as it may.
+const char* budget_field(const Configuration& wanted) {
+    return wanted.mode == v1::DELIVERY_MODE_VIEWS ? "grid" : "codecs";
+}
+
 } // namespace
 
 void Session::handle(const v1::Configure& wanted, TimePoint now) {
+    if (const auto oversized = oversized_field(wanted)) {
+        return refuse(*oversized, wanted.request_id());
+    }
     auto chosen = negotiate(wanted, channels_, limits_);
     std::optional<Refusal> refusal = chosen ? admit(*chosen) : std::optional(chosen.error());
     if (refusal) {
-        ++counts_.refusals;
-        *answers_.emplace_back().mutable_refused() = to_message(*refusal, wanted.request_id());
-        return;
+        return refuse(*refusal, wanted.request_id());
     }
     request_id_ = wanted.request_id();
     adapter_.configured(wanted, *chosen);
     begin_epoch(std::move(*chosen));
     steering_.move_to(configuration_->feed->steering(), now);
+}
+
+void Session::refuse(const Refusal& refusal, std::uint32_t request_id) {
+    ++counts_.refusals;
+    *answers_.emplace_back().mutable_refused() = to_message(refusal, request_id);
 }
 
 v1::Configured& Session::begin_epoch(Configuration chosen) {
@@ -88,12 +100,12 @@ std::optional<Refusal> Session::subscribe(Configuration& wanted) {
     }
     if (subscription_.feed() == wanted.feed) {
         auto problem = subscription_.change(wanted.wish);
-        return problem ? std::optional(exhausted("grid", std::move(*problem))) : std::nullopt;
+        return problem ? std::optional(exhausted(budget_field(wanted), std::move(*problem))) : std::nullopt;
     }
     auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
     if (!subscription) {
         count_camera();
-        return exhausted("grid", std::move(subscription.error()));
+        return exhausted(budget_field(wanted), std::move(subscription.error()));
     }
     subscription_ = std::move(*subscription);
     own_feed_ = std::move(opened); // the one before closes, after its subscription has ended
@@ -123,7 +135,7 @@ tl::expected<feed::OwnFeed, Refusal> Session::open_own_feed(const Configuration&
 std::optional<Refusal> Session::change_own_feed(Configuration& wanted) {
     wanted.feed = own_feed_.feed();
     if (auto problem = subscription_.change(wanted.wish)) {
-        return exhausted("grid", std::move(*problem));
+        return exhausted(budget_field(wanted), std::move(*problem));
     }
     if (auto problem = own_feed_.change(load_of(wanted))) {
         subscription_.change(configuration_->wish); // fits: nobody else is there
@@ -156,7 +168,7 @@ void Session::adapt(TimePoint now) {
     if (!change) {
         return;
     }
-    auto chosen = negotiate(adapter_.rung(change->level).wanted, channels_, limits_);
+    auto chosen = negotiate(adapter_.configure(*change), channels_, limits_);
     if (!chosen || admit(*chosen)) { // such as no room for views of another size
         adapter_.refused();
         return;

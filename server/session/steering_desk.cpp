@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/steering_desk.h"
 
-#include "core/base/log.h"
 #include "core/wire/convert.h"
 
 #include <glm/glm.hpp>
@@ -67,8 +66,9 @@ glm::mat4 rigid(const glm::mat4& pose) {
 
 } // namespace
 
-SteeringDesk::SteeringDesk(feed::Steerer steerer, double max_poses_per_second)
-    : steerer_(std::move(steerer)), poses_({.per_second = max_poses_per_second, .burst = max_poses_per_second}) {}
+SteeringDesk::SteeringDesk(feed::Steerer steerer, double max_poses_per_second, log::Quota& lines)
+    : steerer_(std::move(steerer)), poses_({.per_second = max_poses_per_second, .burst = max_poses_per_second}),
+      lines_(lines) {}
 
 void SteeringDesk::move_to(const std::shared_ptr<feed::Steering>& steering, TimePoint now) {
     if (seat_.steering() == steering) {
@@ -173,13 +173,13 @@ void SteeringDesk::collect(TimePoint now) {
         } else if (const auto* const loss = std::get_if<Loss>(&*notice)) {
             lease_ = 0;
             answers_.push_back(released(loss->lease, to_proto(loss->reason)));
-            log::info("steering ended", {{"by", steerer_.name}, {"lease", loss->lease}});
+            lines_.write(log::Level::kInfo, "steering ended", {{"by", steerer_.name}, {"lease", loss->lease}}, now);
         } else {
             lease_ = std::get<feed::SteeringGrant>(*notice).lease;
             v1::SteeringGranted& granted = *answers_.emplace_back().mutable_steering_granted();
             granted.set_lease(lease_);
             granted.set_expires_after_ms(static_cast<std::uint32_t>(seat_.steering()->lease_length().count()));
-            log::info("steering begins", {{"by", steerer_.name}, {"lease", lease_}});
+            lines_.write(log::Level::kInfo, "steering begins", {{"by", steerer_.name}, {"lease", lease_}}, now);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/log_quota.h"
 #include "core/base/rate_limit.h"
 #include "server/feed/steering.h"
 
@@ -18,7 +19,8 @@ class SteeringDesk {
 public:
     using TimePoint = feed::Steering::TimePoint;
 
-    SteeringDesk(feed::Steerer steerer, double max_poses_per_second);
+    /// `lines` must outlive the desk.
+    SteeringDesk(feed::Steerer steerer, double max_poses_per_second, log::Quota& lines);
 
     /// The session is at this camera now; null: at none that can be steered. The same one again changes nothing.
     void move_to(const std::shared_ptr<feed::Steering>& steering, TimePoint now);
@@ -46,6 +48,7 @@ private:
     feed::SteeringSeat seat_;
     std::uint64_t lease_ = 0; ///< that it holds, as far as it was told; 0: none
     RateLimit poses_;
+    log::Quota& lines_;
     std::deque<v1::ServerMessage> answers_;
 };
 

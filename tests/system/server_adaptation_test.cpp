@@ -241,11 +241,11 @@ v1::Configure adaptive(std::uint32_t side = 6) {
 
 class AdaptationTest : public testing::Test {
 protected:
-    std::vector<Rung> ladder(const v1::Configure& wanted) const {
+    Ladder ladder(const v1::Configure& wanted) const {
         const std::vector<std::shared_ptr<feed::Feed>> channels{feed_};
         const auto granted = negotiate(wanted, channels, Limits{});
         EXPECT_TRUE(granted);
-        return make_ladder(wanted, *granted);
+        return {wanted, *granted};
     }
 
     v1::ServerMessage next() {
@@ -304,29 +304,92 @@ TEST_F(AdaptationTest, TheLadderGoesFromTheLeastPainfulOn) {
     wanted.mutable_adaptation()->add_modes(v1::DELIVERY_MODE_SCENE);
     std::string changes;
     double cost = 2.0;
-    for (const Rung& rung : ladder(wanted)) {
-        changes += rung.change + "; ";
-        EXPECT_LT(rung.cost, cost) << rung.change;
+    const Ladder made = ladder(wanted);
+    for (const Rung& rung : made.rungs()) {
+        changes += made.change(rung) + "; ";
+        EXPECT_LT(rung.cost, cost) << made.change(rung);
         cost = rung.cost;
         const std::vector<std::shared_ptr<feed::Feed>> channels{feed_};
-        EXPECT_TRUE(negotiate(rung.wanted, channels, Limits{})) << "every rung is a Configure that is granted";
+        EXPECT_TRUE(negotiate(made.configure(rung), channels, Limits{})) << "every rung is a Configure that is granted";
     }
-    EXPECT_EQ(changes, "; JPEG of quality 75; quality 55; quality 40; 1/2 of the frames; 1/4 of the frames; "
-                       "views of 43x24; views of 32x18; 5x5 views; 4x4 views; 3x3 views; ")
+    EXPECT_EQ(changes, "as asked for; JPEG of quality 75; quality 55; quality 40; 1/2 of the frames; "
+                       "1/4 of the frames; views of 43x24; views of 32x18; 5x5 views; 4x4 views; 3x3 views; ")
         << "two planes of 64x36 are more than nine views of 32x18, so that mode SCENE would not help";
 }
 
 TEST_F(AdaptationTest, BoundsHold) {
     v1::Configure wanted = adaptive();
     wanted.mutable_adaptation()->Clear();
-    EXPECT_EQ(ladder(wanted).size(), 1U) << "nothing may change";
+    EXPECT_EQ(ladder(wanted).rungs().size(), 1U) << "nothing may change";
     wanted.mutable_adaptation()->set_min_quality(40);
-    EXPECT_EQ(ladder(wanted).size(), 1U) << "lossless stays lossless unless JPEG is allowed";
+    EXPECT_EQ(ladder(wanted).rungs().size(), 1U) << "lossless stays lossless unless JPEG is allowed";
     wanted.mutable_adaptation()->add_modes(v1::DELIVERY_MODE_SCENE);
-    const auto rungs = ladder(wanted);
-    ASSERT_EQ(rungs.size(), 2U) << "36 views are more than two planes";
-    EXPECT_EQ(rungs[1].wanted.modes(0), v1::DELIVERY_MODE_SCENE);
-    EXPECT_EQ(rungs[1].wanted.planes(), v1::PLANE_SET_ILLUMINATION);
+    const Ladder made = ladder(wanted);
+    ASSERT_EQ(made.rungs().size(), 2U) << "36 views are more than two planes";
+    EXPECT_EQ(made.configure(made.rungs()[1]).modes(0), v1::DELIVERY_MODE_SCENE);
+    EXPECT_EQ(made.configure(made.rungs()[1]).planes(), v1::PLANE_SET_ILLUMINATION);
+}
+
+TEST_F(AdaptationTest, EveryModeHasPlanesThatCanBecomeJpeg) {
+    struct Mode {
+        v1::DeliveryMode mode;
+        std::vector<PlaneSemantic> pictures;
+    };
+    for (const Mode& mode : {Mode{v1::DELIVERY_MODE_VIEWS, {PlaneSemantic::kColour}},
+                             Mode{v1::DELIVERY_MODE_SCENE, {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}},
+                             Mode{v1::DELIVERY_MODE_WARP, {PlaneSemantic::kColour, PlaneSemantic::kResidualColour}}}) {
+        v1::Configure wanted = adaptive();
+        wanted.add_modes(mode.mode);
+        wanted.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
+        const Ladder made = ladder(wanted);
+        ASSERT_GT(made.rungs().size(), 2U);
+        for (const Rung& rung : made.rungs().subspan(1, 2)) {
+            const std::vector<std::shared_ptr<feed::Feed>> channels{feed_};
+            const v1::Configured got = to_message(*negotiate(made.configure(rung), channels, Limits{}), 1, 2, 2);
+            std::vector<PlaneSemantic> lossy;
+            for (const v1::PlaneHeader& plane : got.planes()) {
+                if (plane.codec() == v1::CODEC_JPEG) {
+                    EXPECT_EQ(plane.quality(), rung.quality);
+                    lossy.push_back(*wire::from_proto(plane.semantic()));
+                }
+            }
+            EXPECT_EQ(lossy, mode.pictures) << v1::DeliveryMode_Name(mode.mode);
+        }
+    }
+}
+
+TEST_F(AdaptationTest, TheLadderKeepsALossyCodecAndRaisesNoQuality) {
+    v1::Configure wanted = adaptive();
+    v1::CodecPreference& colour = *wanted.add_codecs();
+    colour.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+    colour.add_codecs(v1::CODEC_H264);
+    colour.set_quality(55);
+    const Ladder made = ladder(wanted);
+    EXPECT_EQ(made.change(made.rungs()[1]), "quality 40");
+    const v1::Configure next = made.configure(made.rungs()[1]);
+    EXPECT_EQ(next.codecs(0).codecs(0), v1::CODEC_H264);
+    EXPECT_EQ(next.codecs(0).quality(), 40U);
+}
+
+TEST_F(AdaptationTest, AWarpSessionOnANarrowConnectionGetsFewerBytes) {
+    v1::Configure wanted = adaptive();
+    wanted.add_modes(v1::DELIVERY_MODE_WARP);
+    configure(wanted);
+    frame(20ms);
+    const std::uint64_t before = session_.counts().plane_bytes.begin()->second;
+    until_change(20ms, 60);
+    const auto down = until_change(400ms, 12);
+    ASSERT_TRUE(down);
+    EXPECT_EQ(down->planes(0).semantic(), v1::PLANE_SEMANTIC_COLOUR);
+    EXPECT_EQ(down->planes(0).codec(), v1::CODEC_JPEG);
+    frame(20ms);
+    frame(20ms);
+    std::uint64_t jpeg_bytes = 0;
+    for (const auto& [choice, bytes] : session_.counts().plane_bytes) {
+        jpeg_bytes += choice.encoding.codec == codec::CodecId::kJpeg ? bytes : 0;
+    }
+    EXPECT_GT(before, 0U);
+    EXPECT_GT(jpeg_bytes, 0U) << "colour really comes as JPEG";
 }
 
 TEST_F(AdaptationTest, AQueueTakesTheSessionDownAndCalmBringsItBack) {

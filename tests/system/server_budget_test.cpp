@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What sessions of one peer share, and what a session does when it is used up.
+#include "server/session/quality_rungs.h"
 #include "server/session/session.h"
 #include "server_synthetic.h"
 
@@ -71,6 +72,39 @@ TEST(BudgetTest, ManyThreadsNeverTakeTooMuch) {
     }
     threads.clear();
     EXPECT_EQ(budget->used(), 0U);
+}
+
+/// As many sessions as there are qualities, each with its own in that codec; what the channel encodes for them.
+feed::Demand demand_of_all_qualities(v1::DeliveryMode mode, v1::PlaneSemantic semantic, v1::Codec codec) {
+    feed::ChannelInfo info = test::synthetic_info();
+    info.max_view_pixels = 1ULL << 40U; // rungs alone have to bound it
+    const auto feed = std::make_shared<feed::Feed>(info);
+    const TimePoint now{1h};
+    std::vector<std::unique_ptr<Session>> sessions;
+    for (std::uint32_t quality = 1; quality <= codec::kMaxQuality; ++quality) {
+        v1::ClientMessage message;
+        v1::Configure& wanted = *message.mutable_configure();
+        wanted.add_modes(mode);
+        v1::CodecPreference& preference = *wanted.add_codecs();
+        preference.set_semantic(semantic);
+        preference.add_codecs(codec);
+        preference.set_quality(quality);
+        sessions.push_back(std::make_unique<Session>(
+            std::vector{feed}, Limits{}, [](const feed::FramePtr&) {}, now));
+        sessions.back()->on_message(message, now);
+        EXPECT_TRUE(sessions.back()->configuration()) << quality;
+    }
+    return feed->demand();
+}
+
+TEST(EncodingsTest, AHundredQualitiesAreSixEncodings) {
+    for (const v1::Codec codec : {v1::CODEC_JPEG, v1::CODEC_H264}) {
+        const auto views = demand_of_all_qualities(v1::DELIVERY_MODE_VIEWS, v1::PLANE_SEMANTIC_COLOUR, codec);
+        EXPECT_EQ(views.views.size(), kQualityRungs.size()) << v1::Codec_Name(codec);
+    }
+    const auto scene =
+        demand_of_all_qualities(v1::DELIVERY_MODE_SCENE, v1::PLANE_SEMANTIC_DIFFUSE, v1::CODEC_JPEG);
+    EXPECT_EQ(scene.repeated_planes(), kQualityRungs.size() - 1) << "and one of specular light";
 }
 
 /// Two sessions of one peer.

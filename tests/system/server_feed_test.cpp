@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/feed/frame_interval.h"
 #include "server_synthetic.h"
 
 #include <atomic>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <thread>
 
 namespace fieldcast::feed {
@@ -51,6 +54,66 @@ TEST(FeedTest, RefusedChangeKeepsTheOldWish) {
     EXPECT_TRUE(subscription->change(views_wish(*feed, 3, 4)).has_value());
     EXPECT_EQ(feed->demand().views[0].positions.size(), 9U);
     EXPECT_FALSE(Feed::subscribe(feed, views_wish(*feed, 4, 4), [](const FramePtr&) {}).has_value());
+}
+
+Wish in_quality(Wish wish, std::uint8_t quality) {
+    const codec::Encoding encoding{.codec = codec::CodecId::kJpeg, .quality = quality};
+    if (auto* views = std::get_if<ViewsWish>(&wish)) {
+        views->format.encoding = encoding;
+    } else {
+        std::get<PlanesWish>(wish).choices.front().encoding = encoding;
+    }
+    return wish;
+}
+
+TEST(FeedTest, EveryEncodingOfViewsCountsInTheBudget) {
+    ChannelInfo info = test::synthetic_info();
+    info.max_view_pixels = 2 * 9ULL * 64 * 36;
+    const auto feed = std::make_shared<Feed>(info);
+    const Wish views = views_wish(*feed, 3, 3);
+    const auto one = Feed::subscribe(feed, in_quality(views, 40), [](const FramePtr&) {});
+    const auto two = Feed::subscribe(feed, in_quality(views, 55), [](const FramePtr&) {});
+    const auto same = Feed::subscribe(feed, in_quality(views, 55), [](const FramePtr&) {});
+    EXPECT_TRUE(one && two && same);
+    const auto third = Feed::subscribe(feed, in_quality(views, 75), [](const FramePtr&) {});
+    ASSERT_FALSE(third);
+    EXPECT_NE(third.error().find("codec and quality"), std::string::npos) << third.error();
+}
+
+TEST(FeedTest, EveryFurtherEncodingOfAPlaneCountsInTheBudget) {
+    ChannelInfo info = test::synthetic_info();
+    info.max_view_pixels = (64 + 2 + 3) * (36 + 1 + 1);
+    const auto feed = std::make_shared<Feed>(info);
+    const auto first = Feed::subscribe(feed, kPlanes, [](const FramePtr&) {});
+    const auto second = Feed::subscribe(feed, in_quality(kPlanes, 40), [](const FramePtr&) {});
+    const auto shared = Feed::subscribe(feed, in_quality(kPlanes, 40), [](const FramePtr&) {});
+    EXPECT_TRUE(first && second && shared) << "the first one of a plane is free, the second one fits";
+    EXPECT_FALSE(Feed::subscribe(feed, in_quality(kPlanes, 55), [](const FramePtr&) {}));
+}
+
+TEST(FeedTest, WaitingBeginsWhenAFrameIsDue) {
+    const auto feed = std::make_shared<Feed>(test::synthetic_info());
+    feed->set_frames_per_second(0.1F);
+    const auto subscription = Feed::subscribe(feed, kPlanes, [](const FramePtr&) {});
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_GE(feed->waiting_time(begin + 5s), 5s) << "the first frame is due at once";
+    WorkerPool pool(1);
+    feed->publish(test::synthetic_frame(feed->info(), feed->demand(), 1, pool));
+    const auto published = std::chrono::steady_clock::now();
+    EXPECT_EQ(feed->waiting_time(begin + 10s), 0s) << "at a frame in ten seconds nobody waits that long";
+    EXPECT_GE(feed->waiting_time(published + 130s), 120s);
+    EXPECT_LT(feed->waiting_time(begin + 130s), 120s + 1ms);
+    feed->set_frames_per_second(10.0F);
+    EXPECT_GE(feed->waiting_time(published + 5s), 4900ms) << "the rate that holds now counts";
+}
+
+TEST(FeedTest, EveryRateHasAnInterval) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float rate : {0.004F, 1e-30F, 0.0F, -1.0F, -kInfinity, std::nanf("")}) {
+        EXPECT_NEAR(std::chrono::duration<double>(frame_interval(rate)).count(), 10.0, 1e-6) << rate;
+    }
+    EXPECT_EQ(frame_interval(kInfinity), 0ns);
+    EXPECT_EQ(frame_interval(100.0F), 10ms);
 }
 
 TEST(FeedTest, StoppingWakesWhoeverWaitsForDemand) {

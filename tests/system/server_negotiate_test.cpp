@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/negotiate.h"
+#include "server/session/quality_rungs.h"
 #include "server_synthetic.h"
 
-#include <gtest/gtest.h>
+#include <cmath>
+#include <gmock/gmock.h>
 #include <limits>
+#include <map>
 
 namespace fieldcast::session {
 namespace {
@@ -209,10 +212,10 @@ TEST_F(Negotiate, ChoosesTheFirstCodecThatFitsThePlane) {
     EXPECT_EQ(format(*ask()).encoding, (codec::Encoding{codec::CodecId::kJpeg, 40}));
     wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
     wanted_.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
-    prefer(v1::PLANE_SEMANTIC_DEPTH, 60);
-    prefer(v1::PLANE_SEMANTIC_DIFFUSE, 60);
+    prefer(v1::PLANE_SEMANTIC_DEPTH, 55);
+    prefer(v1::PLANE_SEMANTIC_DIFFUSE, 55);
     EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[0].encoding,
-              (codec::Encoding{codec::CodecId::kJpeg, 60}));
+              (codec::Encoding{codec::CodecId::kJpeg, 55}));
     EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[1].encoding, codec::Encoding{});
     EXPECT_EQ(std::get<feed::PlanesWish>(ask()->wish).choices[2].encoding, (codec::Encoding{codec::CodecId::kRaw, 0}));
     prefer(v1::PLANE_SEMANTIC_NORMAL, 101);
@@ -226,11 +229,11 @@ TEST_F(Negotiate, SceneMayHaveOnePlaneOfLight) {
     v1::CodecPreference& light = *wanted_.add_codecs();
     light.set_semantic(v1::PLANE_SEMANTIC_TOTAL_LIGHT);
     light.add_codecs(v1::CODEC_JPEG);
-    light.set_quality(60);
+    light.set_quality(55);
     const auto answer = ask();
     ASSERT_TRUE(answer.has_value());
     EXPECT_EQ(planes_of(*answer), std::vector{PlaneSemantic::kTotalLight});
-    EXPECT_EQ(feed::to_text(answer->wish), "planes total light jpeg 60");
+    EXPECT_EQ(feed::to_text(answer->wish), "planes total light jpeg 55");
     const v1::Configured message = to_message(*answer, 1, 1, 2);
     EXPECT_EQ(message.planes(0).format(), v1::PLANE_FORMAT_R11G11B10F);
     EXPECT_EQ(message.planes(0).width_px(), 64U + 2 + 3);
@@ -276,6 +279,46 @@ TEST_F(Negotiate, RefusesUnknownCodecsAlone) {
     colour.add_codecs(static_cast<v1::Codec>(99));
     EXPECT_EQ(refusal().field, "codecs");
     EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_UNSUPPORTED);
+}
+
+TEST_F(Negotiate, QualitiesAreFewAndAnnounced) {
+    v1::CodecPreference& colour = *wanted_.add_codecs();
+    colour.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+    colour.add_codecs(v1::CODEC_JPEG);
+    std::map<std::uint32_t, std::uint32_t> first_asked; // by what was chosen
+    for (std::uint32_t asked = 1; asked <= codec::kMaxQuality; ++asked) {
+        colour.set_quality(asked);
+        const std::uint32_t chosen = to_message(*ask(), 1, 1, 2).planes(0).quality();
+        EXPECT_LE(chosen, std::max(asked, 10U)) << "nobody gets more than he asked for";
+        first_asked.try_emplace(chosen, asked);
+    }
+    EXPECT_EQ(first_asked, (std::map<std::uint32_t, std::uint32_t>{
+                               {10, 1}, {25, 25}, {40, 40}, {55, 55}, {75, 75}, {90, 90}}));
+    colour.set_codecs(0, v1::CODEC_ZSTD_FILTERED);
+    EXPECT_EQ(to_message(*ask(), 1, 1, 2).planes(0).quality(), 0U);
+}
+
+TEST_F(Negotiate, TheQualityOfTheChannelIsOneMore) {
+    EXPECT_EQ(quality_rung(0, 80), 80);
+    EXPECT_EQ(quality_rung(79, 80), 75);
+    EXPECT_EQ(quality_rung(80, 80), 80);
+    EXPECT_EQ(quality_rung(89, 80), 80);
+    EXPECT_EQ(quality_rung(100, 80), 90);
+    EXPECT_EQ(quality_rung(3, 80), 10) << "the lowest one stands for all below";
+}
+
+TEST_F(Negotiate, SlowerThanTheSlowestRateIsRefusedByField) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float rate : {0.004F, 1e-30F, 0.0999F, -1.0F, std::nanf(""), kInfinity, -kInfinity}) {
+        wanted_.set_max_frames_per_second(rate);
+        EXPECT_EQ(refusal().field, "max_frames_per_second") << rate;
+        EXPECT_THAT(refusal().message, testing::HasSubstr("from 0.1 on"));
+        wanted_.set_max_frames_per_second(0.1F);
+        EXPECT_EQ(ask()->frames_per_second, 0.1F);
+        wanted_.mutable_adaptation()->set_min_frames_per_second(rate);
+        EXPECT_EQ(refusal().field, "adaptation.min_frames_per_second") << rate;
+        wanted_.clear_adaptation();
+    }
 }
 
 TEST_F(Negotiate, RefusesRatesAndChunkSizesByField) {

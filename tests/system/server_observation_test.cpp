@@ -6,6 +6,8 @@
 #include "server_client.h"
 #include "server_synthetic.h"
 
+#include <algorithm>
+#include <cctype>
 #include <gmock/gmock.h>
 #include <thread>
 
@@ -127,6 +129,24 @@ TEST_F(Observation, CountsPlanesOfModeScene) {
     call.cancel();
     EXPECT_FALSE(call.finish().ok());
     EXPECT_TRUE(shows("fieldcast_sessions_closed_total{reason=\"cancelled\"} 1\n"));
+}
+
+TEST_F(Observation, CountsSessionsOfEveryModeByItsName) {
+    SyntheticChannel channel;
+    const auto server = serve(channel.feed());
+    const google::protobuf::EnumDescriptor& modes = *v1::DeliveryMode_descriptor();
+    for (int i = 1; i < modes.value_count(); ++i) { // 0 is none
+        OpenCall call(connect(server->port()));
+        v1::Configure wanted;
+        wanted.add_modes(static_cast<v1::DeliveryMode>(modes.value(i)->number()));
+        call.configure(wanted);
+        ASSERT_TRUE(call.read_until(Kind::kConfigured).has_value());
+        std::string name = modes.value(i)->name().substr(std::string("DELIVERY_MODE_").size());
+        std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+        EXPECT_TRUE(shows("fieldcast_sessions{channel=\"synthetic\",mode=\"" + name + "\",grid=\"6x6\"} 1\n"));
+        call.half_close();
+        EXPECT_TRUE(call.finish().ok());
+    }
 }
 
 TEST_F(Observation, CountsRefusalsByWhatWasExceeded) {

@@ -3,6 +3,7 @@
 #include "server/session/session.h"
 #include "server_synthetic.h"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <limits>
 
@@ -278,6 +279,33 @@ TEST_F(SteeringSession, RoundedRotationsAreMadeExact) {
             EXPECT_NEAR(product[i][j], i == j ? 1.0F : 0.0F, 1e-6F); // a few roundings of floats near 1
         }
     }
+}
+
+TEST_F(SteeringSession, AskingAllTheTimeFillsNoLog) {
+    configure("synthetic");
+    testing::internal::CaptureStderr();
+    for (int i = 0; i < 20'000; ++i) { // twenty seconds at the highest rate
+        request();
+        while (next().message_case() != Kind::MESSAGE_NOT_SET) {
+        }
+        now_ += 1ms;
+    }
+    const std::string log = testing::internal::GetCapturedStderr();
+    EXPECT_FALSE(session_.is_flooded());
+    EXPECT_LE(std::count(log.begin(), log.end(), '\n'), 20) << "ten lines of each of two kinds";
+    EXPECT_GE(std::count(log.begin(), log.end(), '\n'), 1);
+}
+
+TEST_F(SteeringSession, PosesOfThousandsOfValuesAreDenied) {
+    configure("synthetic");
+    request();
+    next();
+    v1::ClientMessage huge = pose(2);
+    huge.mutable_steer_camera()->mutable_world_from_camera()->Resize(2000, 0.0F);
+    session_.on_message(huge, now_);
+    const v1::ServerMessage answer = next();
+    EXPECT_EQ(answer.steering_denied().reason(), v1::STEERING_DENIAL_REASON_INVALID_POSE);
+    EXPECT_THAT(answer.steering_denied().message(), testing::HasSubstr("2000 values, not 12"));
 }
 
 TEST_F(SteeringSession, TooManyPosesAreDenied) {

@@ -12,6 +12,7 @@ fieldcast_test(server_session_test LABELS quick tsan
             ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_credits_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_field_limits_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp

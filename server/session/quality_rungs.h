@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace fieldcast::session {
+
+/// Qualities of lossy codecs that clients get, rising. Few, so that clients share encodings whatever they ask for.
+inline constexpr std::array<std::uint8_t, 6> kQualityRungs{10, 25, 40, 55, 75, 90};
+
+/// The best quality that is not above `asked`, or the lowest one. The channel's own counts as well; 0 asks for it.
+inline std::uint8_t quality_rung(std::uint32_t asked, std::uint8_t of_channel) {
+    if (asked == 0) {
+        return of_channel;
+    }
+    std::uint8_t best = kQualityRungs.front();
+    for (const std::uint8_t rung : kQualityRungs) {
+        best = rung <= asked ? rung : best;
+    }
+    return of_channel <= asked && of_channel > best ? of_channel : best;
+}
+
+} // namespace fieldcast::session
