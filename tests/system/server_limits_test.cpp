@@ -119,6 +119,26 @@ TEST(ServiceLimits, PixelsOfOnePeerAreLimited) {
     EXPECT_TRUE(two.finish().ok());
 }
 
+TEST(ServiceLimits, BytesOfMessagesCountBeforeAnybodyReadsThem) {
+    ServedChannel served({.max_messages_per_second = 50.0}); // 100 at once
+    v1::Configure wanted;
+    wanted.set_resume_token(std::string(7000, 'x')); // 54 for its bytes, and 50 for a Configure
+    OpenCall call(connect(served.port()));
+    call.configure(wanted);
+    const grpc::Status status = call.finish();
+    EXPECT_EQ(status.error_code(), StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_THAT(status.error_message(), HasSubstr("messages or bytes"));
+    EXPECT_TRUE(served.shows("fieldcast_sessions_closed_total{reason=\"flooding\"}", 1));
+    wanted.set_resume_token(std::string(257, 'x'));
+    OpenCall other(connect(served.port()));
+    other.configure(wanted);
+    const auto refused = other.read_until(Kind::kRefused);
+    ASSERT_TRUE(refused.has_value());
+    EXPECT_EQ(refused->refused().field(), "resume_token");
+    other.half_close();
+    EXPECT_TRUE(other.finish().ok());
+}
+
 TEST(ServiceLimits, SceneDownloadsAreLimitedAndCounted) {
     ServedChannel served({.max_scene_downloads_per_peer = 1});
     Download first(served.port());
