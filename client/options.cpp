@@ -62,7 +62,7 @@ struct FlagText {
     bool steers_now = false;
 };
 
-void add_view_flags(CLI::App& app, FlagText& text, net::Wish& wish) {
+void add_view_flags(CLI::App& app, FlagText& text) {
     app.add_option("--grid", text.grid, "Views, ROWSxCOLS, at most 72 in all")->capture_default_str();
     app.add_option("--size", text.size, "Pixels of one view, WIDTHxHEIGHT; without it: those of the source");
     app.add_option("--fov", text.fov_deg, "Vertical field of view, degrees; without it: the source's")
@@ -269,7 +269,7 @@ Invocation read_options(int argc, const char* const* argv) {
     Options options;
     FlagText text;
     add_server_flags(app, text, options.play);
-    add_view_flags(app, text, options.play.wish);
+    add_view_flags(app, text);
     add_mode_flags(app, text, options.play);
     add_steering_flags(app, text);
     add_output_flags(app, text, options);
