@@ -5,6 +5,7 @@
 #include "core/base/log.h"
 #include "server/access/tls_context.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 
@@ -13,6 +14,16 @@ namespace fieldcast::access {
 namespace {
 
 constexpr std::chrono::seconds kInterval{1};
+constexpr std::size_t kMaxLoggedLines = 5;
+
+void log_broken_lines(const std::vector<std::string>& problems) {
+    for (std::size_t i = 0; i < std::min(problems.size(), kMaxLoggedLines); ++i) {
+        log::error("a line of the token file counts for nobody", {{"problem", problems[i]}});
+    }
+    if (problems.size() > kMaxLoggedLines) {
+        log::error("further lines of the token file count for nobody", {{"count", problems.size() - kMaxLoggedLines}});
+    }
+}
 
 } // namespace
 
@@ -22,6 +33,7 @@ AccessWatch::AccessWatch(const Security& security, Gate& gate, std::function<voi
         token_stamp_ = stamp_of(*security_.tokens); // before reading: a change in between is seen again
         TokenList tokens = TokenList::read(*security_.tokens);
         log::info("tokens in use", {{"file", security_.tokens->string()}, {"count", tokens.size()}});
+        warn_if_empty(tokens);
         gate_.replace(std::move(tokens));
     }
     if (security_.certificates) {
@@ -58,17 +70,36 @@ void AccessWatch::watch(const std::stop_token& stop) {
 
 void AccessWatch::look_at_tokens() {
     const FileStamp stamp = stamp_of(*security_.tokens);
-    if (stamp == token_stamp_) {
+    if (stamp == token_stamp_ && token_problem_.empty()) {
         return;
     }
+    const bool is_changed = stamp != token_stamp_;
     token_stamp_ = stamp;
     try {
-        TokenList tokens = TokenList::read(*security_.tokens);
-        log::info("tokens replaced", {{"file", security_.tokens->string()}, {"count", tokens.size()}});
-        gate_.replace(std::move(tokens));
-        on_new_tokens_();
-    } catch (const std::exception& problem) {
-        log::error("tokens not replaced, the earlier ones stay in force", {{"problem", problem.what()}});
+        std::vector<std::string> problems;
+        TokenList tokens = TokenList::read_good_lines(*security_.tokens, problems);
+        token_problem_.clear();
+        log_broken_lines(problems);
+        take_up(std::move(tokens));
+    } catch (const std::exception& problem) { // and tried again until it can be read
+        if (is_changed || token_problem_ != problem.what()) {
+            token_problem_ = problem.what();
+            log::error("the token file cannot be used: nobody may call", {{"problem", token_problem_}});
+            take_up({});
+        }
+    }
+}
+
+void AccessWatch::take_up(TokenList tokens) {
+    log::info("tokens replaced", {{"file", security_.tokens->string()}, {"count", tokens.size()}});
+    warn_if_empty(tokens);
+    gate_.replace(std::move(tokens));
+    on_new_tokens_();
+}
+
+void AccessWatch::warn_if_empty(const TokenList& tokens) const {
+    if (tokens.size() == 0) {
+        log::warn("there is no token in force: nobody may call", {{"file", security_.tokens->string()}});
     }
 }
 

@@ -30,6 +30,7 @@ FileStamp stamp_of(const std::filesystem::path& file) {
     }
     constexpr std::int64_t kNanoseconds = 1'000'000'000;
     return {.modified_ns = facts.st_mtim.tv_sec * kNanoseconds + facts.st_mtim.tv_nsec,
+            .changed_ns = facts.st_ctim.tv_sec * kNanoseconds + facts.st_ctim.tv_nsec,
             .bytes = facts.st_size,
             .inode = facts.st_ino,
             .device = facts.st_dev};

@@ -14,6 +14,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
 /// Tells whether a file was replaced or rewritten. Follows links, so that a swapped folder counts.
 struct FileStamp {
     std::int64_t modified_ns = 0;
+    std::int64_t changed_ns = 0; ///< also by chmod, and by writers that set the time of modification back
     std::int64_t bytes = -1; ///< -1: it could not be looked at
     ino_t inode = 0;
     dev_t device = 0;

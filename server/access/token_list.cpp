@@ -17,8 +17,8 @@ constexpr std::size_t kMaxEntries = 4096;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::string_view kHashPrefix = "sha256:";
 
-/// Reads one line that is neither empty nor a comment; `place` is file and line.
-Identity parse_line(const std::string& line, const std::string& place) {
+/// Reads one line that is neither empty nor a comment.
+Identity parse_line(const std::string& line) {
     std::istringstream words(line);
     std::string name;
     std::string role_word;
@@ -26,21 +26,68 @@ Identity parse_line(const std::string& line, const std::string& place) {
     std::string rest;
     words >> name >> role_word >> hash_word;
     if (hash_word.empty() || words >> rest) {
-        throw UserError(place + ": a line is NAME ROLE sha256:HEX, as --make-token prints it");
+        throw UserError("a line is NAME ROLE sha256:HEX, as --make-token prints it");
     }
     if (!is_token_name(name)) {
-        throw UserError(place + ": a name has 1 to 64 letters, digits, '.', '_' or '-'");
+        throw UserError("a name has 1 to 64 letters, digits, '.', '_' or '-'");
     }
     const auto role = parse_role(role_word);
     if (!role) {
-        throw UserError(place + ": a role is view, steer or admin");
+        throw UserError("a role is view, steer or admin");
     }
     const bool has_prefix = hash_word.starts_with(kHashPrefix);
     const auto hash = has_prefix ? parse_hash(std::string_view(hash_word).substr(kHashPrefix.size())) : std::nullopt;
     if (!hash) {
-        throw UserError(place + ": the third word is sha256: and 64 hexadecimal digits, never the token itself");
+        throw UserError("the third word is sha256: and 64 hexadecimal digits, never the token itself");
     }
     return {.name = name, .role = *role, .hash = *hash};
+}
+
+/// The lines of a file so far.
+class Entries {
+public:
+    /// Throws UserError if the name or the hash stands in an earlier line; then that line does not count either.
+    void add(Identity entry, int line) {
+        if (lines_.size() == kMaxEntries) {
+            throw UserError("there are more than " + std::to_string(kMaxEntries) + " tokens");
+        }
+        for (Line& earlier : lines_) {
+            const bool is_same_name = earlier.entry.name == entry.name;
+            if (is_same_name || earlier.entry.hash == entry.hash) {
+                const std::string what = is_same_name ? "the name '" + entry.name + "'" : std::string("this hash");
+                const std::string problem = what + " stands in line " + std::to_string(earlier.number) + ", too";
+                earlier.counts = false;
+                lines_.push_back({.entry = std::move(entry), .number = line, .counts = false}); // `earlier` is gone
+                throw UserError(problem);
+            }
+        }
+        lines_.push_back({.entry = std::move(entry), .number = line, .counts = true});
+    }
+
+    std::vector<Identity> take() {
+        std::vector<Identity> counted;
+        for (Line& line : lines_) {
+            if (line.counts) {
+                counted.push_back(std::move(line.entry));
+            }
+        }
+        return counted;
+    }
+
+private:
+    struct Line {
+        Identity entry;
+        int number = 0;
+        bool counts = true;
+    };
+    std::vector<Line> lines_;
+};
+
+std::string text_of(const std::filesystem::path& file) {
+    if (is_writable_by_all(file)) {
+        throw UserError(file.string() + ": everybody on this machine may write to it; chmod o-w");
+    }
+    return read_text_file(file, kMaxFileBytes);
 }
 
 } // namespace
@@ -56,37 +103,41 @@ std::string token_line(const Identity& identity) {
 }
 
 TokenList TokenList::read(const std::filesystem::path& file) {
-    if (is_writable_by_all(file)) {
-        throw UserError(file.string() + ": everybody on this machine may write to it; chmod o-w");
-    }
-    return parse(read_text_file(file, kMaxFileBytes), file.string());
+    return parse(text_of(file), file.string());
+}
+
+TokenList TokenList::read_good_lines(const std::filesystem::path& file, std::vector<std::string>& problems) {
+    return parse_good_lines(text_of(file), file.string(), problems);
 }
 
 TokenList TokenList::parse(std::string_view text, const std::string& place) {
-    TokenList list;
+    std::vector<std::string> problems;
+    TokenList list = parse_good_lines(text, place, problems);
+    if (!problems.empty()) {
+        throw UserError(problems.front());
+    }
+    return list;
+}
+
+TokenList TokenList::parse_good_lines(std::string_view text, const std::string& place,
+                                      std::vector<std::string>& problems) {
+    Entries entries;
     std::istringstream lines{std::string(text)};
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
-        const std::string here = place + ":" + std::to_string(++number);
+        ++number;
         const std::size_t begin = line.find_first_not_of(" \t\r");
         if (begin == std::string::npos || line[begin] == '#') {
             continue;
         }
-        Identity entry = parse_line(line, here);
-        if (std::ranges::find(list.entries_, entry.name, &Identity::name) != list.entries_.end()) {
-            throw UserError(here + ": the name '" + entry.name + "' stands in an earlier line, too");
+        try {
+            entries.add(parse_line(line), number);
+        } catch (const UserError& problem) {
+            problems.push_back(place + ":" + std::to_string(number) + ": " + problem.what());
         }
-        if (std::ranges::find(list.entries_, entry.hash, &Identity::hash) != list.entries_.end()) {
-            throw UserError(here + ": this hash stands in an earlier line, too");
-        }
-        if (list.entries_.size() == kMaxEntries) {
-            throw UserError(here + ": there are more than " + std::to_string(kMaxEntries) + " tokens");
-        }
-        list.entries_.push_back(std::move(entry));
     }
-    if (list.entries_.empty()) {
-        throw UserError(place + ": there is no token in it; make one with --make-token");
-    }
+    TokenList list;
+    list.entries_ = entries.take();
     return list;
 }
 

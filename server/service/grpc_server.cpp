@@ -43,14 +43,6 @@ void tick_all(SessionTable& sessions) {
     }
 }
 
-void send_revoked_away(SessionTable& sessions, const access::Gate& gate) {
-    const auto streams = sessions.streams_without_token(gate);
-    for (const auto& stream : streams) {
-        stream->go_away("the token of this session was revoked", Clock::now(), session::CloseReason::kRevoked);
-    }
-    log::info("sessions without a token sent away", {{"count", streams.size()}});
-}
-
 /// A second look, after that at the configuration: nothing else stands between strangers and this server.
 void check_protection(const HostPort& address, const access::Security& security) {
     const access::Protection protection{.has_tls = security.certificates.has_value(),
@@ -73,8 +65,8 @@ struct GrpcServer::State {
     State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
           const access::Security& security, const Observation& observation)
         : registry(observation.registry), channels(feeds), limits(session_limits), service_metrics(*registry),
-          catalog(feeds, limits, *registry), light_field(feeds, limits, gate, {&service_metrics, observation.recorder}),
-          watch(security, gate, [this] { send_revoked_away(light_field.sessions(), gate); }),
+          catalog(feeds, limits, gate, *registry), light_field(feeds, limits, gate, {&service_metrics, observation.recorder}),
+          watch(security, gate, [this] { light_field.send_revoked_away(); }),
           collector(registry->on_collect([this](metrics::Page& page) { collect(page); })) {}
 
     void tick_until(const std::stop_token& stop);

@@ -40,6 +40,11 @@ feed::Steerer steerer_of(const access::Identity& identity, std::uint64_t session
             .right = right_of(identity.role)};
 }
 
+void send_away_for_token(Stream& stream) {
+    stream.go_away("the token of this session was revoked", std::chrono::steady_clock::now(),
+                   session::CloseReason::kRevoked);
+}
+
 using SessionKey = std::array<std::string, 3>; // channel, mode, grid
 
 } // namespace
@@ -111,7 +116,18 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
     sessions_.add(id, stream);
+    if (!gate_.is_valid(*identity)) { // revoked since: whoever sent the others away did not see this one
+        send_away_for_token(*stream);
+    }
     return stream.get();
+}
+
+void LightFieldService::send_revoked_away() {
+    const auto streams = sessions_.streams_without_token(gate_);
+    for (const auto& stream : streams) {
+        send_away_for_token(*stream);
+    }
+    log::info("sessions without a token sent away", {{"count", streams.size()}});
 }
 
 } // namespace fieldcast::service

@@ -27,6 +27,9 @@ public:
 
     SessionTable& sessions() { return sessions_; }
 
+    /// Sends everybody away whose token has gone.
+    void send_revoked_away();
+
 private:
     void collect(metrics::Page& page);
 

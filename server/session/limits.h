@@ -27,6 +27,7 @@ struct Limits {
     std::chrono::milliseconds configure_deadline{10'000}; ///< from opening to the first Configured
     std::chrono::milliseconds stall_deadline{30'000};     ///< a frame unacknowledged, or a message unsent
     std::chrono::milliseconds going_away_deadline{5'000}; ///< from GoingAway to the forced end
+    std::chrono::milliseconds revoked_deadline{3'000};    ///< the same once its token has gone, and from then on
     std::chrono::milliseconds channel_deadline{120'000};  ///< no frame although somebody waits: not healthy
     std::chrono::milliseconds handshake_deadline{10'000}; ///< from the connection to its first HTTP/2 settings
     std::chrono::milliseconds idle_deadline{300'000};     ///< a connection without calls

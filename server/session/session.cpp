@@ -137,6 +137,10 @@ void Session::go_away(const std::string& reason, TimePoint at, CloseReason why) 
         departure_ = Departure{.reason = reason, .at = at};
         close_reason_ = why;
     }
+    if (why == CloseReason::kRevoked) { // whether or not the client reads what it is told
+        const TimePoint latest = at + limits_.revoked_deadline;
+        cut_at_ = cut_at_ ? std::min(*cut_at_, latest) : latest;
+    }
 }
 
 void Session::on_tick(TimePoint now) {
@@ -193,9 +197,11 @@ v1::ServerMessage Session::depart(TimePoint now) {
     v1::ServerMessage message;
     v1::GoingAway& going_away = *message.mutable_going_away();
     going_away.set_reason(departure_->reason);
-    going_away.set_deadline_ms(static_cast<std::uint32_t>(limits_.going_away_deadline.count()));
     departure_.reset();
-    cut_at_ = now + limits_.going_away_deadline;
+    const TimePoint latest = now + limits_.going_away_deadline;
+    cut_at_ = cut_at_ ? std::min(*cut_at_, latest) : latest;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(*cut_at_ - now);
+    going_away.set_deadline_ms(static_cast<std::uint32_t>(std::max(left.count(), std::int64_t{0})));
     steering_.leave();
     close_feeds();
     if (mailbox_.take()) {

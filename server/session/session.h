@@ -40,7 +40,8 @@ public:
     /// The next message to write, if there is one now.
     std::optional<wire::WireChunk> next(TimePoint now);
 
-    /// From `at` on: says GoingAway, then sends no further frames. The first call counts.
+    /// From `at` on: says GoingAway, then sends no further frames. The first call counts. Whose token has gone is cut
+    /// after limits.revoked_deadline, even if it does not read what it is told.
     void go_away(const std::string& reason, TimePoint at, CloseReason why = CloseReason::kDrained);
 
     /// Watches deadlines, and whether the configuration fits the connection; call it several times per heartbeat

@@ -13,9 +13,7 @@ namespace fieldcast::fuzz {
 namespace {
 
 void read_list(std::string_view text) {
-    const auto list = access::TokenList::parse(text, "tokens");
-    FC_ASSERT(list.size() > 0, "an empty list is refused");
-    static_cast<void>(list.find(text));
+    FC_ASSERT(!access::TokenList::parse(text, "tokens").find(text), "no text is a token of its own file");
 }
 
 void read_token(Bytes input) {

@@ -154,6 +154,31 @@ TEST_F(ProtectedServer, ServesWhoHasATokenAndWritesNoSecretAnywhere) {
     }
 }
 
+/// Seconds are what docs/operations.md promises.
+TEST_F(ProtectedServer, LetsNobodyInOnceTheTokenFileIsEmptyOrGone) {
+    const std::string server = "https://localhost:" + port_;
+    const std::vector<std::string> access{"--tls-ca", folder_ / "ca.pem", "--token-file", folder_ / "alice.txt"};
+    std::vector<std::string> endless{"--server", server,       "--grid", "2x2",        "--size",
+                                     "32x18",    "--patience", "3",      "--save",   "none", "--frames", "0"};
+    endless.insert(endless.end(), access.begin(), access.end());
+    for (const bool is_deleted : {false, true}) {
+        write_file(folder_ / "tokens.txt", made_.line + "\n");
+        for (int tries = 0; run_client(server, access) != 0; ++tries) { // until the file is taken up
+            ASSERT_LT(tries, 20) << said_;
+        }
+        Program client(FIELDCAST_CLIENT, endless, folder_ / "endless.log");
+        ASSERT_TRUE(client.has_said("frame 1 (id", kRunPatience)) << client.text();
+        is_deleted ? static_cast<void>(std::filesystem::remove(folder_ / "tokens.txt"))
+                   : write_file(folder_ / "tokens.txt", "");
+        EXPECT_EQ(client.exit_code(5s), 2) << client.text();
+        EXPECT_THAT(client.text(), HasSubstr("does not know the token"));
+        EXPECT_EQ(run_client(server, access), 2) << said_;
+        EXPECT_THAT(server_->text(),
+                    HasSubstr(is_deleted ? "tokens.txt: cannot be read" : "there is no token in force"));
+    }
+    EXPECT_THAT(server_->text(), HasSubstr("reason=revoked"));
+}
+
 TEST_F(SecurityProcess, PrintedConfigurationNamesFilesOnly) {
     const MadeToken made = make_token("alice", "view");
     const Issued issued = CertificateAuthority().issue();

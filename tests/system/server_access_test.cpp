@@ -88,10 +88,47 @@ TEST(TokenList, NamesFileAndLineOfWhatItCannotRead) {
     EXPECT_THAT(refusal("b/b view sha256:00"), StartsWith("t.txt:1: a name has"));
     EXPECT_THAT(refusal("bob view sha256:00"), StartsWith("t.txt:1: the third word"));
     EXPECT_THAT(refusal(good + " more"), StartsWith("t.txt:1: a line is"));
-    EXPECT_THAT(refusal(good + "\n" + good), StartsWith("t.txt:2: the name 'alice'"));
+    EXPECT_THAT(refusal(good + "\n" + good), StartsWith("t.txt:2: the name 'alice' stands in line 1"));
     EXPECT_THAT(refusal(good + "\n" + token_line(identity_of("bob", Role::kView, "fc_a"))),
-                StartsWith("t.txt:2: this hash"));
-    EXPECT_THAT(refusal("# nobody\n"), HasSubstr("--make-token"));
+                StartsWith("t.txt:2: this hash stands in line 1"));
+}
+
+TEST(TokenList, WithoutLinesNobodyStandsInIt) {
+    for (const char* const text : {"", "\n", "# nobody\n"}) {
+        EXPECT_EQ(TokenList::parse(text, "t.txt").size(), 0U);
+        EXPECT_EQ(TokenList::parse(text, "t.txt").find(""), std::nullopt);
+    }
+}
+
+TEST(TokenList, LinesWithAMistakeCountForNobodyAndTheOthersStillCount) {
+    const TestFolder folder;
+    const auto file = folder / "tokens.txt";
+    const std::string alice = token_line(identity_of("alice", Role::kView, "fc_a")) + "\n";
+    const std::string bob = token_line(identity_of("bob", Role::kView, "fc_b")) + "\n";
+    const std::string carol = token_line(identity_of("carol", Role::kView, "fc_c")) + "\n";
+    const std::string bob_again = token_line(identity_of("bob", Role::kAdmin, "fc_other")) + "\n";
+    write_file(file, alice + "dave view sha256:00\n" + bob + carol + bob_again);
+    std::vector<std::string> problems;
+    const TokenList list = TokenList::read_good_lines(file, problems);
+    EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("tokens.txt:2: the third word"),
+                                               HasSubstr("tokens.txt:5: the name 'bob' stands in line 3")));
+    EXPECT_EQ(list.size(), 2U);
+    EXPECT_TRUE(list.find("fc_a").has_value());
+    EXPECT_TRUE(list.find("fc_c").has_value());
+    EXPECT_EQ(list.find("fc_b"), std::nullopt) << "nobody knows which of the two lines is meant";
+    EXPECT_EQ(list.find("fc_other"), std::nullopt);
+}
+
+TEST(FileStamp, TellsARewriteOfTheSameSizeWhoseTimeWasSetBack) {
+    const TestFolder folder;
+    const auto file = folder / "tokens.txt";
+    std::ofstream(file) << "one";
+    const auto written = std::filesystem::last_write_time(file);
+    const FileStamp before = stamp_of(file);
+    std::ofstream(file) << "two";
+    std::filesystem::last_write_time(file, written);
+    EXPECT_EQ(stamp_of(file).modified_ns, before.modified_ns);
+    EXPECT_NE(stamp_of(file), before);
 }
 
 TEST(TokenList, NeverRepeatsATokenThatStandsThereByMistake) {

@@ -28,6 +28,7 @@ constexpr const char* kListServices = "\x3A\x01*"; // ServerReflectionRequest.li
 constexpr const char* kServing = "\x08\x01";       // HealthCheckResponse.status = SERVING
 constexpr auto kRefusalPatience = 2s; // handshakes take milliseconds; a refused one is tried again until then
 constexpr auto kReloadPatience = 20s; // files are looked at once a second
+constexpr auto kRevocationBound = 5s; // docs/operations.md promises it
 
 std::string line(const std::string& name, access::Role role, const std::string& token) {
     return access::token_line({.name = name, .role = role, .hash = access::hash_token(token)}) + "\n";
@@ -88,6 +89,17 @@ protected:
         }
         v1::ListChannelsResponse response;
         return v1::Catalog::NewStub(connect(port, credentials))->ListChannels(&context, {}, &response);
+    }
+
+    /// Whether calls with `token` come to end like that: a change of the token file has no event to wait for.
+    bool comes_to_status(const service::GrpcServer& server, const std::string& token, StatusCode wanted) const {
+        const auto deadline = Clock::now() + kReloadPatience;
+        StatusCode now = status_of(server.port(), trusting(authority_), token).error_code();
+        while (now != wanted && Clock::now() < deadline) {
+            std::this_thread::sleep_for(50ms);
+            now = status_of(server.port(), trusting(authority_), token).error_code();
+        }
+        return now == wanted;
     }
 
     const TestFolder folder_;
@@ -255,22 +267,93 @@ TEST_F(Security, RevokedTokensEndTheirSessions) {
     EXPECT_TRUE(stays.finish().ok());
 }
 
-TEST_F(Security, DamagedTokenFilesChangeNothing) {
+TEST_F(Security, EmptyTokenFileAtTheStartMeansNobody) {
+    write_file(folder_ / "tokens.txt", "# nobody yet\n");
+    const auto server = serve(tls_and_tokens());
+    EXPECT_EQ(status_of(server->port(), trusting(authority_), viewer_).error_code(), StatusCode::UNAUTHENTICATED);
+    write_file(folder_ / "tokens.txt", line("viewer", access::Role::kView, viewer_));
+    EXPECT_TRUE(comes_to_status(*server, viewer_, StatusCode::OK));
+}
+
+/// What may happen to a token file, and who may call then.
+struct Fate {
+    const char* name;
+    void (*befall)(const std::filesystem::path& file);
+    const char* logged;
+};
+
+class FatefulTokens : public Security, public testing::WithParamInterface<Fate> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FatefulTokens,
+    testing::Values(Fate{"LastLineDeleted", [](const auto& file) { write_file(file, ""); }, "nobody may call"},
+                    Fate{"Truncated", [](const auto& file) { std::ofstream{file}; }, "nobody may call"},
+                    Fate{"FileDeleted", [](const auto& file) { std::filesystem::remove(file); }, "cannot be read"},
+                    Fate{"Folder",
+                         [](const auto& file) {
+                             std::filesystem::remove(file);
+                             std::filesystem::create_directory(file);
+                         },
+                         "cannot be read"},
+                    Fate{"WritableByAll",
+                         [](const auto& file) {
+                             using std::filesystem::perms;
+                             std::filesystem::permissions(file, perms::others_write,
+                                                          std::filesystem::perm_options::add);
+                         },
+                         "chmod o-w"},
+                    Fate{"TooLarge", [](const auto& file) { write_file(file, std::string(2U << 20, '#')); },
+                         "is larger than"},
+                    Fate{"Garbled", [](const auto& file) { write_file(file, "\x1B\x7F\xFF garbled\n"); },
+                         "tokens.txt:1"}),
+    [](const auto& fate) { return fate.param.name; });
+
+TEST_P(FatefulTokens, LeaveNobodyInAndAreLogged) {
+    const auto server = serve(tls_and_tokens());
+    OpenCall leaves(connect(server->port(), trusting(authority_)), viewer_);
+    leaves.configure();
+    ASSERT_TRUE(leaves.read_until(Kind::kConfigured).has_value());
+    testing::internal::CaptureStderr();
+    const auto before = Clock::now();
+    GetParam().befall(folder_ / "tokens.txt");
+    leaves.finish();
+    EXPECT_LE(Clock::now() - before, kRevocationBound);
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr(GetParam().logged));
+    EXPECT_EQ(status_of(server->port(), trusting(authority_), viewer_).error_code(), StatusCode::UNAUTHENTICATED);
+    std::filesystem::remove_all(folder_ / "tokens.txt");
+    write_file(folder_ / "tokens.txt", line("viewer", access::Role::kView, viewer_));
+    EXPECT_TRUE(comes_to_status(*server, viewer_, StatusCode::OK)) << "mended";
+}
+
+TEST_F(Security, RevokedSessionsEndThoughTheyReadNothing) {
+    access::Security security;
+    security.tokens = folder_ / "tokens.txt";
+    const auto server = serve(security);
+    OpenCall silent(connect_with_small_window(server->port()), viewer_);
+    v1::Configure wanted; // views as they are: more than a small window takes in
+    v1::CodecPreference& preference = *wanted.add_codecs();
+    preference.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
+    preference.add_codecs(v1::CODEC_RAW);
+    silent.configure(wanted);
+    ASSERT_TRUE(silent.read_until(Kind::kConfigured).has_value()); // from here on, nothing is read
+    const auto before = Clock::now();
+    std::filesystem::remove(folder_ / "tokens.txt");
+    EXPECT_TRUE(test::comes_to_sessions(*server, 0));
+    EXPECT_LE(Clock::now() - before, kRevocationBound);
+}
+
+TEST_F(Security, DamagedLineCountsForNobodyAndTheOthersStay) {
     testing::internal::CaptureStderr();
     const auto server = serve(tls_and_tokens());
-    write_file(folder_ / "tokens.txt", "viewer view " + viewer_ + "\n"); // the token itself, by mistake
-    std::string log;
-    for (const auto deadline = Clock::now() + kReloadPatience;
-         log.find("tokens not replaced") == std::string::npos && Clock::now() < deadline;) {
-        std::this_thread::sleep_for(50ms); // a log has no event to wait for
-        log += testing::internal::GetCapturedStderr();
-        testing::internal::CaptureStderr();
-    }
-    testing::internal::GetCapturedStderr();
-    EXPECT_THAT(log, HasSubstr("tokens not replaced"));
+    write_file(folder_ / "tokens.txt",
+               "viewer view " + viewer_ + "\n" + // the token itself, by mistake
+                   line("operator", access::Role::kAdmin, operator_));
+    EXPECT_TRUE(comes_to_status(*server, viewer_, StatusCode::UNAUTHENTICATED));
+    EXPECT_TRUE(status_of(server->port(), trusting(authority_), operator_).ok());
+    const std::string log = testing::internal::GetCapturedStderr();
+    EXPECT_THAT(log, HasSubstr("a line of the token file counts for nobody"));
     EXPECT_THAT(log, HasSubstr("tokens.txt:1"));
     EXPECT_THAT(log, Not(HasSubstr(viewer_)));
-    EXPECT_TRUE(status_of(server->port(), trusting(authority_), viewer_).ok());
 }
 
 } // namespace
