@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <limits>
 
@@ -130,7 +131,7 @@ template <class T> void GltfAccessors::read_sparse(int accessor, std::vector<T>&
     const tinygltf::Accessor& source = entry(accessor);
     const auto count = static_cast<std::uint64_t>(source.sparse.count);
     const std::uint64_t components = component_count(source);
-    const auto elements = [&](int view, int offset, std::uint64_t packed, std::uint64_t element_components) {
+    const auto elements = [&](int view, std::integral auto offset, std::uint64_t packed, std::uint64_t element_components) {
         const std::uint64_t stride = document_.model.bufferViews[static_cast<std::size_t>(view)].byteStride;
         return Elements{views_.bytes(view).subspan(static_cast<std::size_t>(offset)), stride == 0 ? packed : stride,
                         count, element_components, source.normalized};

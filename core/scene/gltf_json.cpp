@@ -71,6 +71,14 @@ Chunks split_container(std::span<const std::byte> bytes, const std::string& file
     return chunks;
 }
 
+/// Where byte number `byte` (from 1) stands, for people.
+std::string place_in(std::span<const std::byte> text, std::size_t byte) {
+    const auto before = text.first(std::min(text.size(), std::max(byte, std::size_t{1}) - 1));
+    const auto lines = std::ranges::count(before, std::byte{'\n'});
+    const auto last = std::ranges::find(before.rbegin(), before.rend(), std::byte{'\n'});
+    return "line " + std::to_string(lines + 1) + ", column " + std::to_string(last - before.rbegin() + 1);
+}
+
 nlohmann::json parse_text(std::span<const std::byte> text, const std::string& file) {
     if (text.size() > kMaxJsonBytes) {
         refuse(file, "json", "larger than 256 MiB");
@@ -84,8 +92,10 @@ nlohmann::json parse_text(std::span<const std::byte> text, const std::string& fi
     };
     try {
         return nlohmann::json::parse(begin, begin + text.size(), check_depth);
-    } catch (const nlohmann::json::exception& error) {
-        refuse(file, "json", error.what());
+    } catch (const nlohmann::json::parse_error& error) {
+        refuse(file, "json", place_in(text, error.byte) + ": this is no JSON; a scene is a glTF 2.0 file, .gltf or .glb");
+    } catch (const nlohmann::json::exception&) {
+        refuse(file, "json", "holds numbers or texts that no glTF file has");
     }
 }
 

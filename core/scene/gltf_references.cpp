@@ -2,6 +2,7 @@
 // Every index and range of a glTF file. tinygltf checks none of them.
 #include "core/scene/gltf_document.h"
 
+#include <concepts>
 #include <optional>
 
 namespace fieldcast::scene {
@@ -108,7 +109,7 @@ private:
             document_.refuse(object, "sparse indices have componentType " + std::to_string(type));
         }
         const auto count = static_cast<std::uint64_t>(sparse.count);
-        const auto offset_of = [](int offset) { return static_cast<std::uint64_t>(offset); }; // ≥ 0: checked as JSON
+        const auto offset_of = [](std::integral auto offset) { return static_cast<std::uint64_t>(offset); }; // ≥ 0: checked as JSON
         check_range(sparse.indices.bufferView, offset_of(sparse.indices.byteOffset), count, *component_bytes(type),
                     object + " (sparse indices)");
         check_range(sparse.values.bufferView, offset_of(sparse.values.byteOffset), count, element,
