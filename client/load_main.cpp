@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/printable.h"
 
 #include <cstdio>
 
@@ -46,10 +47,10 @@ int run(const client::LoadOptions& options) {
     try {
         return report(options, client::load::run_load(options.scenario, on_progress, interrupt.token()));
     } catch (const UserError& error) {
-        std::fprintf(stderr, "fieldcast-load: %s\n", error.what());
+        std::fprintf(stderr, "fieldcast-load: %s\n", printable(error.what()).c_str());
         return client::kExitUserError;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "fieldcast-load: %s\n", error.what());
+        std::fprintf(stderr, "fieldcast-load: %s\n", printable(error.what()).c_str());
         return client::kExitFailed;
     }
 }

@@ -4,6 +4,7 @@
 #include "client/options.h"
 
 #include "core/base/log.h"
+#include "core/base/printable.h"
 #include "core/image/atomic_file.h"
 
 #include <cstdio>
@@ -18,6 +19,12 @@ using client::kExitFailed;
 using client::kExitInterrupted;
 using client::kExitUserError;
 
+/// What went wrong may be told in words of the server, or of a scene that it sent.
+void complain(std::string_view problem) {
+    constexpr std::size_t kMaxBytes = 8192; // more than any message of ours
+    std::fprintf(stderr, "fieldcast-client: %s\n", printable(problem, kMaxBytes).c_str());
+}
+
 int report(const client::Options& options, const client::play::PlayResult& result, bool was_interrupted) {
     if (result.summary.shown > 0) {
         std::fputs(to_table(result.summary).c_str(), stdout);
@@ -30,7 +37,7 @@ int report(const client::Options& options, const client::play::PlayResult& resul
         return kExitInterrupted;
     }
     if (result.failure) {
-        std::fprintf(stderr, "fieldcast-client: %s\n", result.failure->message.c_str());
+        complain(result.failure->message);
         return result.failure->was_refused ? kExitUserError : kExitFailed;
     }
     return 0;
@@ -65,17 +72,17 @@ int run(client::Options options) {
         const client::play::PlayResult result = play_or_fall_back(options, interrupt);
         return report(options, result, interrupt.was_requested());
     } catch (const client::play::NoDeviceForViews& error) {
-        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        complain(error.what());
         return kExitUserError;
     } catch (const UserError& error) {
-        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        complain(error.what());
         return kExitUserError;
     } catch (const client::net::NetError& error) {
-        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        complain(error.what());
         const int failed = error.is_denied() ? kExitUserError : kExitFailed;
         return interrupt.was_requested() ? kExitInterrupted : failed;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "fieldcast-client: %s\n", error.what());
+        complain(error.what());
         return interrupt.was_requested() ? kExitInterrupted : kExitFailed;
     }
 }

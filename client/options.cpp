@@ -4,6 +4,7 @@
 #include "client/setting_text.h"
 
 #include "core/base/bearer_token.h"
+#include "core/base/flag_problem.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -280,8 +281,15 @@ Invocation read_options(int argc, const char* const* argv) {
         return {options, "", 0};
     } catch (const CLI::ParseError& error) {
         std::ostringstream out;
-        const bool is_help = app.exit(error, out, out) == 0;
-        return {std::nullopt, out.str(), is_help ? 0 : 2};
+        if (app.exit(error, out, out) == 0) { // --help, --version
+            return {std::nullopt, out.str(), 0};
+        }
+        const auto type_of = [&](const std::string& flag) {
+            const CLI::Option* const option = app.get_option_no_throw(flag);
+            return option == nullptr ? std::string() : option->get_type_name();
+        };
+        return {std::nullopt,
+                flag_problem(error.get_name(), error.what(), type_of) + "\nfieldcast-client --help tells the flags\n", 2};
     } catch (const UserError& error) {
         return {std::nullopt, std::string(error.what()) + "\n", 2};
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/metrics_page.h"
 
+#include "core/base/printable.h"
+
 #include <algorithm>
 #include <arpa/inet.h>
 #include <charconv>
@@ -133,7 +135,7 @@ Metrics parse_metrics(const std::string& page) {
         double value = 0.0;
         const auto parsed = std::from_chars(begin, line.data() + line.size(), value);
         if (parsed.ec == std::errc{} && std::isfinite(value)) {
-            metrics[line.substr(0, cut)] = value;
+            metrics[printable(line.substr(0, cut))] = value;
         }
     }
     return metrics;
@@ -159,7 +161,7 @@ tl::expected<Metrics, std::string> fetch_metrics(const MetricsUrl& url, std::chr
     const std::size_t body = answer->find("\r\n\r\n");
     const std::string status = answer->substr(0, answer->find("\r\n"));
     if (body == std::string::npos || !status.starts_with("HTTP/1.") || status.find(" 200") == std::string::npos) {
-        return tl::unexpected(name + ": answers '" + status.substr(0, 100) + "'");
+        return tl::unexpected(name + ": answers '" + printable(status, 100) + "'");
     }
     return parse_metrics(answer->substr(body + 4));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/tally.h"
 
+#include "core/base/printable.h"
+
 #include <algorithm>
 
 namespace fieldcast::client::load {
@@ -14,7 +16,8 @@ Second& Tally::second_of(const Window& window, std::int64_t time_ns) {
     return seconds[index];
 }
 
-void Tally::add_reason(const std::string& reason) {
+void Tally::add_reason(const std::string& said) {
+    const std::string reason = printable(said); // servers have their say in it
     const auto known = reasons.find(reason);
     if (known != reasons.end()) {
         ++known->second;

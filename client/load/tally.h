@@ -48,7 +48,7 @@ struct Tally {
     LatencyHistogram& of(Stage stage) { return stages[static_cast<std::size_t>(stage)]; }
     const LatencyHistogram& of(Stage stage) const { return stages[static_cast<std::size_t>(stage)]; }
     Second& second_of(const Window& window, std::int64_t time_ns); ///< `time_ns` must be in the window
-    void add_reason(const std::string& reason);
+    void add_reason(const std::string& said);
     void add(const Tally& other);
 };
 

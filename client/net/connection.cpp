@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/host_port.h"
 #include "core/base/log.h"
+#include "core/base/printable.h"
 #include "core/wire/protobuf_log.h"
 
 #include <grpc/support/log.h>
@@ -101,21 +102,22 @@ void Connection::State::prepare(grpc::ClientContext& context) const {
 }
 
 NetError to_error(const std::string& what, const grpc::Status& status) {
+    const std::string said = printable(status.error_message()); // by the server, or by whatever stands in its place
     switch (status.error_code()) {
     case grpc::StatusCode::UNAVAILABLE:
-        return {what + ": " + with_advice(status.error_message()), true, false, Obstacle::kUnreachable};
+        return {what + ": " + with_advice(said), true, false, Obstacle::kUnreachable};
     case grpc::StatusCode::DEADLINE_EXCEEDED:
     case grpc::StatusCode::RESOURCE_EXHAUSTED:
     case grpc::StatusCode::ABORTED:
     case grpc::StatusCode::CANCELLED:
     case grpc::StatusCode::UNKNOWN:
     case grpc::StatusCode::INTERNAL:
-        return {what + ": " + with_advice(status.error_message()), true};
+        return {what + ": " + with_advice(said), true};
     case grpc::StatusCode::UNAUTHENTICATED:
     case grpc::StatusCode::PERMISSION_DENIED:
-        return {what + ": " + status.error_message(), false, true};
+        return {what + ": " + said, false, true};
     default:
-        return {what + ": " + status.error_message(), false};
+        return {what + ": " + said, false};
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/session.h"
 
-#include "client/net/printable.h"
+#include "core/base/printable.h"
 #include "core/wire/convert.h"
 
 #include <algorithm>

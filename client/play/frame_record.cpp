@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/frame_record.h"
 
+#include "core/base/printable.h"
+
 namespace fieldcast::client::play {
 
 timing::DeliveredFrame frame_record(const net::FrameArrived& arrived, const std::string& channel,
@@ -10,7 +12,7 @@ timing::DeliveredFrame frame_record(const net::FrameArrived& arrived, const std:
         return arrived.clock ? timing::on_our_clock(server_ns, -arrived.clock->server_minus_client_ns) : 0;
     };
     timing::DeliveredFrame record;
-    record.made = {.channel = channel,
+    record.made = {.channel = printable(channel),
                    .frame_id = arrived.frame_id,
                    .scene_time_ns = arrived.frame.header().scene_time_ns,
                    .pose_sampled_ns = ours(server.pose_sampled_ns),

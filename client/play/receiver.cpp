@@ -4,6 +4,7 @@
 #include "client/play/frame_record.h"
 
 #include "core/base/log.h"
+#include "core/base/printable.h"
 #include "core/scene/bundle.h"
 
 #include <algorithm>
@@ -145,7 +146,7 @@ void Receiver::refused(const net::Refused& refused, SessionState& state) {
 
 void Receiver::agreed(net::Agreement agreement, SessionState& state) {
     if (scene_hash_ && agreement.scene_hash != *scene_hash_) {
-        state.end = SessionEnd{"channel '" + agreement.channel + "' now shows another scene, " +
+        state.end = SessionEnd{"channel '" + printable(agreement.channel) + "' now shows another scene, " +
                                    scene::to_hex(agreement.scene_hash) + "; start the client again",
                                false};
         return;

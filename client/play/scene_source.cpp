@@ -4,6 +4,7 @@
 #include "client/play/scene_cache.h"
 
 #include "core/base/log.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 
@@ -17,7 +18,8 @@ scene::SceneHash hash_of_channel(const std::vector<net::ChannelInfo>& channels, 
     const auto found = std::find_if(channels.begin(), channels.end(),
                                     [&](const net::ChannelInfo& channel) { return channel.name == name; });
     if (found == channels.end()) {
-        throw UserError("the server has no channel '" + name + "'; its first is '" + channels.front().name + "'");
+        throw UserError("the server has no channel '" + name + "'; its first is '" +
+                        printable(channels.front().name) + "'");
     }
     return found->scene_hash;
 }

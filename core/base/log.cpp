@@ -2,6 +2,7 @@
 #include "core/base/log.h"
 
 #include "core/base/json_text.h"
+#include "core/base/printable.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,7 @@ namespace fieldcast::log {
 namespace {
 
 constexpr const char* kTextPattern = "%Y-%m-%dT%H:%M:%S.%e %-7l %v";
+constexpr std::size_t kMaxValueBytes = 64U << 10;
 std::atomic<bool> is_json = false;
 
 spdlog::logger& logger() {
@@ -29,12 +31,9 @@ spdlog::logger& logger() {
     return *instance;
 }
 
-bool is_control(char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-}
-
-void append_value(std::string& line, const std::string& value) {
-    const auto needs_quotes = [](char c) { return c == ' ' || c == '=' || c == '"' || is_control(c); };
+void append_value(std::string& line, const std::string& raw) {
+    const std::string value = printable(raw, kMaxValueBytes);
+    const auto needs_quotes = [](char c) { return c == ' ' || c == '=' || c == '"'; };
     if (!value.empty() && std::ranges::none_of(value, needs_quotes)) {
         line += value;
         return;
@@ -44,7 +43,7 @@ void append_value(std::string& line, const std::string& value) {
         if (c == '"' || c == '\\') {
             line += '\\';
         }
-        line += is_control(c) ? ' ' : c;
+        line += c;
     }
     line += '"';
 }

@@ -151,6 +151,7 @@ TomlFile read_toml(const std::filesystem::path& file) {
     TomlFile result;
     const std::optional<toml::table> table = parse_file(file, result.problems);
     if (!table) {
+        result.is_parsed = false;
         return result;
     }
     for (const auto& [key, node] : *table) {

@@ -20,6 +20,7 @@ struct TomlEntry {
 struct TomlFile {
     std::vector<TomlEntry> entries;    ///< in the order of their lines
     std::vector<std::string> problems; ///< "FILE:LINE: …", for everything that is no setting
+    bool is_parsed = true;             ///< false: nothing is known of its settings
 };
 
 /// A table of a TOML file: its own settings, and the tables in it.

@@ -2,6 +2,8 @@
 // Frame headers; cameras, grids and settings in them are read by convert.cpp and convert_settings.cpp.
 #include "core/wire/convert.h"
 
+#include "core/base/printable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,7 +27,7 @@ Decoded<std::vector<StageTime>> stages_from_proto(const v1::FrameHeader& message
         if (entry.stage().size() > kMaxStageName || !std::isfinite(entry.ms()) || entry.ms() < 0.0) {
             return decode_error("header.render_times: name too long or time not a number >= 0");
         }
-        stages.push_back({entry.stage(), entry.ms()});
+        stages.push_back({printable(entry.stage()), entry.ms()});
     }
     return stages;
 }

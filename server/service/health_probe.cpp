@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/health_probe.h"
 
+#include "core/base/printable.h"
 #include "server/access/text_file.h"
 
 #include <future>
@@ -67,7 +68,7 @@ std::optional<std::string> health_problem(const HealthQuestion& question) {
     for (int i = 1; i < kAttempts && status.error_code() == grpc::StatusCode::UNAVAILABLE; ++i) {
         status = ask(stub, question, answer);
     }
-    return status.ok() ? problem_of(answer) : std::optional(to_text(question.address) + ": " + status.error_message());
+    return status.ok() ? problem_of(answer) : std::optional(to_text(question.address) + ": " + printable(status.error_message()));
 }
 
 } // namespace fieldcast::service

@@ -27,6 +27,15 @@ fieldcast_test(client_access_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_access_test.cpp
     DEPENDS fieldcast_client_net)
 
+if(TARGET fieldcast-load AND NOT FIELDCAST_SANITIZE MATCHES thread)
+    fieldcast_test(printed_text_test LABELS system
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/printed_text_test.cpp
+        DEPENDS client_fake_server test_program)
+    add_dependencies(printed_text_test fieldcast-server fieldcast-client fieldcast-load)
+    target_compile_definitions(printed_text_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>"
+        FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>" FIELDCAST_LOAD="$<TARGET_FILE:fieldcast-load>")
+endif()
+
 fieldcast_test(security_process_test LABELS gpu system TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/security_process_test.cpp
     DEPENDS certificate_authority test_program)
