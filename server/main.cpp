@@ -15,7 +15,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <future>
 #include <iostream>
+#include <thread>
 
 namespace {
 
@@ -29,6 +32,7 @@ constexpr int kDeaf = 3; // a supervisor starts it again
 constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
+constexpr std::chrono::milliseconds kStartPollInterval{20}; // also what a start takes longer than it needs
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
 
 constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8"; // of metrics::Page
@@ -118,23 +122,56 @@ void drain(const StopSignals& signals, service::GrpcServer& server, const std::s
     log::info("drained", {{"sessions", server.session_count()}});
 }
 
+/// Everything between the configuration and clients, in the order in which it starts.
+class Service {
+public:
+    /// Ready to serve when constructed. `config` must outlive it.
+    explicit Service(const ops::Config& config)
+        : recorder_(config.timing_files.any() ? std::make_unique<timing::Recorder>(config.timing_files) : nullptr),
+          channels_(config, *registry_),
+          server_(config.listen, observed_feeds(), config.limits, config.security,
+                  {.registry = registry_, .recorder = recorder_.get()}),
+          metrics_server_(config, server_.gate(), *registry_) {}
+
+    const std::vector<std::shared_ptr<feed::Feed>>& feeds() const { return channels_.feeds(); }
+    service::GrpcServer& server() { return server_; }
+
+private:
+    const std::vector<std::shared_ptr<feed::Feed>>& observed_feeds() {
+        if (recorder_ != nullptr) {
+            record_frames(channels_.feeds(), *recorder_);
+        }
+        return channels_.feeds();
+    }
+
+    const std::shared_ptr<metrics::Registry> registry_ = std::make_shared<metrics::Registry>();
+    const std::unique_ptr<timing::Recorder> recorder_; ///< before the channels: outlives all that tell it something
+    const channel::ChannelList channels_;
+    service::GrpcServer server_;
+    const MetricsServer metrics_server_;
+};
+
+/// Starts in a thread of its own, while this one waits for signals: the first one ends the process, whatever the start
+/// is at (reading a scene, compiling kernels, a frame on the device). Nobody is served yet, so nothing is cut off.
+std::unique_ptr<Service> start_unless_stopped(const ops::Config& config, const StopSignals& signals) {
+    std::packaged_task<std::unique_ptr<Service>()> start([&config] { return std::make_unique<Service>(config); });
+    auto started = start.get_future();
+    const std::jthread thread(std::move(start));
+    while (started.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+        if (signals.wait(kStartPollInterval)) {
+            log::info("stopped while starting", {});
+            std::_Exit(kOk); // no destructors: the other thread is at work
+        }
+    }
+    return started.get();
+}
+
 int run(const ops::Config& config, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     listener::raise_descriptor_limit();
-    const auto registry = std::make_shared<metrics::Registry>();
-    std::optional<timing::Recorder> recorder; // before the channels: outlives all that tell it something
-    if (config.timing_files.any()) {
-        recorder.emplace(config.timing_files);
-    }
-    const channel::ChannelList channels(config, *registry);
-    const auto& feeds = channels.feeds();
-    if (recorder) {
-        record_frames(feeds, *recorder);
-    }
-    service::GrpcServer server(config.listen, feeds, config.limits, config.security,
-                               {.registry = registry, .recorder = recorder ? &*recorder : nullptr});
-    const MetricsServer metrics_server(config, server.gate(), *registry);
+    const auto service = start_unless_stopped(config, signals);
+    service::GrpcServer& server = service->server();
     std::optional<ops::PortFile> port_file;
     if (config.port_file) {
         port_file.emplace(*config.port_file, server.port());
@@ -142,8 +179,8 @@ int run(const ops::Config& config, const StopSignals& signals) {
     log::info("SERVING", {{"listen", to_text({.host = config.listen.host, .port = server.port()})},
                           {"tls", config.security.certificates.has_value()},
                           {"tokens", config.security.tokens.has_value()},
-                          {"channels", feeds.size()}});
-    const Ending ending = serve(signals, feeds, server);
+                          {"channels", service->feeds().size()}});
+    const Ending ending = serve(signals, service->feeds(), server);
     drain(signals, server, ending.reason);
     return ending.exit_code;
 }

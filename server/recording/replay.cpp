@@ -2,6 +2,7 @@
 #include "server/recording/replay.h"
 
 #include "core/base/log.h"
+#include "core/lightfield/frame_rate.h"
 #include "server/feed/frame_interval.h"
 
 #include <algorithm>
@@ -61,6 +62,13 @@ Replay::Replay(const ReplaySetup& setup, metrics::Registry& registry)
         interval_ = feed::frame_interval(*setup.frames_per_second);
         loop_length_ = *interval_ * static_cast<std::int64_t>(recording_.frames().size());
     }
+    const std::chrono::duration<double> loop_s = loop_length_;
+    const double frames_per_second = static_cast<double>(recording_.frames().size()) / loop_s.count();
+    if (!(frames_per_second <= 1.001 * static_cast<double>(kMaxFramesPerSecond))) { // times are whole nanoseconds
+        log::warn("recording faster than it is replayed", {{"file", setup.file.string()},
+                                                           {"frames_per_second", frames_per_second},
+                                                           {"replayed", kMaxFramesPerSecond}});
+    }
     if (const auto& ignored = recording_.ignored()) {
         log::warn("recording not finished", {{"file", setup.file.string()}, {"ignored", *ignored}});
     }
@@ -76,16 +84,18 @@ Replay::Replay(const ReplaySetup& setup, metrics::Registry& registry)
 
 void Replay::publish_frames(const std::stop_token& stop) {
     Place place;
-    Clock::time_point begin{}; // of the first loop; later if somebody slept
+    Clock::time_point begin{};    // of the first loop; later if somebody slept
+    Clock::time_point earliest{}; // for the next frame: also while a replay catches up
     while (feed_->wait_for_demand(stop)) {
         const std::shared_ptr<feed::EncodedFrame> frame = frame_at(place); // read before its time
         const auto now = Clock::now();
         if (now > begin + time_of(place) + kLongestDelay) {
             begin = now - std::chrono::duration_cast<Clock::duration>(time_of(place));
         }
-        if (!wait_until(begin + time_of(place), stop)) {
+        if (!wait_until(std::max(begin + time_of(place), earliest), stop)) {
             return;
         }
+        earliest = Clock::now() + feed::frame_interval(kMaxFramesPerSecond);
         if (frame != nullptr) {
             frame->times = times_now();
             feed_->publish(frame);

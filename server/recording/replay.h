@@ -17,8 +17,9 @@ struct ReplaySetup {
     std::optional<float> frames_per_second; ///< unset: as it was recorded
 };
 
-/// A recording as a channel: publishes its frames in a loop while somebody watches. Frame ids go on growing; the first
-/// frame of a loop is a cut. Needs no device.
+/// A recording as a channel: publishes its frames in a loop while somebody watches, never closer together than
+/// kMaxFramesPerSecond allows, whatever their times. Frame ids go on growing; the first frame of a loop is a cut.
+/// Needs no device.
 class Replay {
 public:
     /// `registry` must outlive it. Throws UserError if the file is no recording.

@@ -2,14 +2,20 @@
 #include "server/service/catalog_service.h"
 
 #include "core/wire/convert.h"
+#include "server/service/credentials.h"
 #include "server/service/messages.h"
 #include "server/service/status.h"
 
 #include <algorithm>
+#include <grpcpp/impl/codegen/proto_utils.h>
+#include <grpcpp/impl/codegen/server_callback_handlers.h>
+#include <utility>
 
 namespace fieldcast::service {
 
 namespace {
+
+constexpr std::size_t kSceneChunkBytes = 1U << 20;
 
 v1::ServerLimits limits_message(const std::vector<std::shared_ptr<feed::Feed>>& channels,
                                 const session::Limits& limits) {
@@ -59,17 +65,50 @@ v1::Channel channel_message(const feed::ChannelInfo& info) {
     return message;
 }
 
-class RefuseFetch final : public grpc::ServerWriteReactor<v1::SceneChunk> {
-public:
-    explicit RefuseFetch(const grpc::Status& status) { Finish(status); }
-    void OnDone() override { delete this; }
-};
+grpc::ByteBuffer to_bytes(const google::protobuf::MessageLite& message) {
+    const grpc::Slice slice(message.SerializeAsString());
+    return {&slice, 1};
+}
+
+/// An answer of one message.
+Answer once(const google::protobuf::MessageLite& message) {
+    return [part = std::optional(AnswerPart{.message = to_bytes(message)})]() mutable {
+        return std::exchange(part, std::nullopt);
+    };
+}
+
+/// A bundle from byte `offset` on, chunk by chunk; at its end, one without data.
+Answer chunks_of(std::shared_ptr<const std::vector<std::byte>> bundle, std::uint64_t offset) {
+    return [bundle = std::move(bundle), next = offset, is_over = false]() mutable -> std::optional<AnswerPart> {
+        if (is_over) {
+            return std::nullopt;
+        }
+        const std::size_t count = std::min<std::size_t>(kSceneChunkBytes, bundle->size() - next);
+        v1::SceneChunk chunk;
+        chunk.set_total_bytes(bundle->size());
+        chunk.set_offset(next);
+        chunk.set_data(bundle->data() + next, count);
+        next += count;
+        is_over = next >= bundle->size();
+        return AnswerPart{.message = to_bytes(chunk), .payload_bytes = count};
+    };
+}
+
+/// The request, or why it is none.
+template <class Request> tl::expected<Request, grpc::Status> parse(const grpc::ByteBuffer& bytes) {
+    Request request;
+    grpc::ByteBuffer shared(bytes); // Deserialize empties its argument
+    if (!grpc::SerializationTraits<Request>::Deserialize(&shared, &request).ok()) {
+        return tl::unexpected(to_status(Problem::kInvalid, "the request is no " + request.GetTypeName()));
+    }
+    return request;
+}
 
 } // namespace
 
 CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& channels, const session::Limits& limits,
-                               metrics::Registry& registry)
-    : channels_(channels), limits_(limits), downloads_(limits, registry) {
+                               const access::Gate& gate, metrics::Registry& registry)
+    : channels_(channels), limits_(limits), gate_(gate), downloads_(limits, registry) {
     server_info_.set_version(FIELDCAST_VERSION);
     server_info_.add_modes(v1::DELIVERY_MODE_VIEWS);
     server_info_.add_modes(v1::DELIVERY_MODE_SCENE);
@@ -82,66 +121,102 @@ CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& c
     for (const auto& channel : channels) {
         *channel_list_.add_channels() = channel_message(channel->info());
     }
+    const auto add_constant = [this](int index, const char* name, const google::protobuf::MessageLite& answer) {
+        add_method(index, name, [this, &answer](grpc::CallbackServerContext* context) {
+            return begin(
+                *context, [&answer](const grpc::ByteBuffer&) { return once(answer); }, [](CallEnd, std::uint64_t) {});
+        });
+    };
+    add_constant(0, "/fieldcast.v1.Catalog/GetServerInfo", server_info_);
+    add_constant(1, "/fieldcast.v1.Catalog/ListChannels", channel_list_);
+    add_method(2, "/fieldcast.v1.Catalog/FetchScene",
+               [this](grpc::CallbackServerContext* context) { return begin_download(*context); });
 }
 
-grpc::ServerUnaryReactor* CatalogService::GetServerInfo(grpc::CallbackServerContext* context,
-                                                        const v1::GetServerInfoRequest*,
-                                                        v1::GetServerInfoResponse* response) {
-    *response = server_info_;
-    grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-    reactor->Finish(grpc::Status::OK);
-    return reactor;
+void CatalogService::add_method(int index, const char* name,
+                                std::function<RawReactor*(grpc::CallbackServerContext*)> open) {
+    AddMethod(new grpc::internal::RpcServiceMethod(name, grpc::internal::RpcMethod::BIDI_STREAMING, nullptr));
+    MarkMethodRawCallback(
+        index, new grpc::internal::CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(std::move(open)));
 }
 
-grpc::ServerUnaryReactor* CatalogService::ListChannels(grpc::CallbackServerContext* context,
-                                                       const v1::ListChannelsRequest*,
-                                                       v1::ListChannelsResponse* response) {
-    *response = channel_list_;
-    grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
-    reactor->Finish(grpc::Status::OK);
-    return reactor;
+RawReactor* CatalogService::begin(grpc::CallbackServerContext& context, MakeAnswer answer,
+                                  std::function<void(CallEnd, std::uint64_t)> on_done) {
+    const auto identity = identify(context, gate_);
+    const auto call = CatalogCall::open(
+        context, {.answer = std::move(answer),
+                  .request_deadline = limits_.configure_deadline,
+                  .stall_deadline = limits_.stall_deadline,
+                  .is_admitted = [this, identity] { return identity.has_value() && gate_.is_valid(*identity); },
+                  .on_done = std::move(on_done)});
+    calls_.lock()->push_back(call);
+    return call.get();
 }
 
-grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::FetchScene(grpc::CallbackServerContext* context,
-                                                                     const v1::FetchSceneRequest* request) {
-    const std::string& hash = request->scene_hash();
+RawReactor* CatalogService::begin_download(grpc::CallbackServerContext& context) {
+    const auto place = std::make_shared<std::optional<std::uint64_t>>(); // none: refused, or no request came
+    const auto answer = [this, place, peer = peer_host(context.peer())](
+                            const grpc::ByteBuffer& bytes) -> tl::expected<Answer, grpc::Status> {
+        const auto request = parse<v1::FetchSceneRequest>(bytes);
+        if (!request) {
+            return tl::unexpected(request.error());
+        }
+        auto bundle = bundle_for(*request);
+        if (!bundle) {
+            return bundle;
+        }
+        const auto id = downloads_.admit(peer);
+        if (!id) {
+            return tl::unexpected(to_status(Problem::kExhausted, id.error()));
+        }
+        *place = *id;
+        return bundle;
+    };
+    return begin(context, answer, [this, place](CallEnd end, std::uint64_t bytes) {
+        if (*place) {
+            downloads_.remove(**place, end, bytes);
+        }
+    });
+}
+
+tl::expected<Answer, grpc::Status> CatalogService::bundle_for(const v1::FetchSceneRequest& request) const {
+    const std::string& hash = request.scene_hash();
     const auto shows_scene = [&](const std::shared_ptr<feed::Feed>& channel) {
         const auto& own = channel->info().scene_hash;
         return channel->info().bundle != nullptr && hash.size() == own.size() &&
                std::ranges::equal(hash, own, [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
     };
     if (hash.size() != sizeof(feed::ChannelInfo::scene_hash)) {
-        return new RefuseFetch(
+        return tl::unexpected(
             to_status(Problem::kInvalid, "scene_hash: " + std::to_string(hash.size()) + " bytes, a SHA-256 has 32"));
     }
     const auto channel = std::ranges::find_if(channels_, shows_scene);
     if (channel == channels_.end()) {
-        return new RefuseFetch(to_status(Problem::kNotFound, "scene_hash: no channel of this server shows that scene"));
+        return tl::unexpected(to_status(Problem::kNotFound, "scene_hash: no channel of this server shows that scene"));
     }
     const auto& bundle = (*channel)->info().bundle;
-    if (request->offset() > bundle->size()) {
-        return new RefuseFetch(to_status(Problem::kOutOfRange, "offset: " + std::to_string(request->offset()) +
-                                                                   " is beyond the end of the bundle, " +
-                                                                   std::to_string(bundle->size()) + " bytes"));
+    if (request.offset() > bundle->size()) {
+        return tl::unexpected(to_status(Problem::kOutOfRange, "offset: " + std::to_string(request.offset()) +
+                                                                  " is beyond the end of the bundle, " +
+                                                                  std::to_string(bundle->size()) + " bytes"));
     }
-    return send(*context, bundle, request->offset());
+    return chunks_of(bundle, request.offset());
 }
 
-grpc::ServerWriteReactor<v1::SceneChunk>* CatalogService::send(grpc::CallbackServerContext& context,
-                                                               std::shared_ptr<const std::vector<std::byte>> bundle,
-                                                               std::uint64_t offset) {
-    const auto id = downloads_.admit(peer_host(context.peer()));
-    if (!id) {
-        return new RefuseFetch(to_status(Problem::kExhausted, id.error()));
+void CatalogService::tick(std::chrono::steady_clock::time_point now) {
+    std::vector<std::shared_ptr<CatalogCall>> calls;
+    {
+        auto open = calls_.lock();
+        std::erase_if(*open, [](const auto& call) { return call.expired(); });
+        for (const auto& known : *open) {
+            if (auto call = known.lock()) {
+                calls.push_back(std::move(call));
+            }
+        }
     }
-    const auto writer = SceneWriter::open(context, {.bundle = std::move(bundle),
-                                                    .offset = offset,
-                                                    .stall_deadline = limits_.stall_deadline,
-                                                    .on_done = [this, id = *id](DownloadEnd end, std::uint64_t bytes) {
-                                                        downloads_.remove(id, end, bytes);
-                                                    }});
-    downloads_.add(*id, writer);
-    return writer.get();
+    for (const auto& call : calls) {
+        call->tick(now);
+    }
 }
 
 } // namespace fieldcast::service

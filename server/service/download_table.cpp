@@ -23,7 +23,7 @@ DownloadTable::DownloadTable(const session::Limits& limits, metrics::Registry& r
           const auto count = static_cast<double>(state_.lock()->places.size());
           page.add_gauge({"fieldcast_scene_downloads", "Scene downloads under way."}, {}, count);
       })) {
-    for (const std::string_view result : kDownloadEndNames) {
+    for (const std::string_view result : kCallEndNames) {
         ended_counter(registry_, result);
     }
     ended_counter(registry_, kRefused);
@@ -39,42 +39,19 @@ tl::expected<std::uint64_t, std::string> DownloadTable::admit(const std::string&
     if (state->places.size() >= limits_.max_scene_downloads) {
         return refuse(limits_.max_scene_downloads, "this server serves");
     }
-    const auto of_peer = std::ranges::count_if(state->places, [&](const auto& p) { return p.second.peer == peer; });
+    const auto of_peer = std::ranges::count_if(state->places, [&](const auto& p) { return p.second == peer; });
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_scene_downloads_per_peer) {
         return refuse(limits_.max_scene_downloads_per_peer, "one peer may have");
     }
     const std::uint64_t id = state->next_id++;
-    state->places.emplace(id, Place{.peer = peer, .writer = {}});
+    state->places.emplace(id, peer);
     return id;
 }
 
-void DownloadTable::add(std::uint64_t id, const std::shared_ptr<SceneWriter>& writer) {
-    auto state = state_.lock();
-    const auto place = state->places.find(id);
-    if (place != state->places.end()) { // it may be over already
-        place->second.writer = writer;
-    }
-}
-
-void DownloadTable::remove(std::uint64_t id, DownloadEnd end, std::uint64_t bytes_sent) {
+void DownloadTable::remove(std::uint64_t id, CallEnd end, std::uint64_t bytes_sent) {
     bytes_.add(bytes_sent);
-    ended_counter(registry_, kDownloadEndNames.at(static_cast<std::size_t>(end))).add();
+    ended_counter(registry_, kCallEndNames.at(static_cast<std::size_t>(end))).add();
     state_.lock()->places.erase(id);
-}
-
-void DownloadTable::tick(SceneWriter::Clock::time_point now) {
-    std::vector<std::shared_ptr<SceneWriter>> writers;
-    {
-        auto state = state_.lock();
-        for (const auto& [id, place] : state->places) {
-            if (auto writer = place.writer.lock()) {
-                writers.push_back(std::move(writer));
-            }
-        }
-    }
-    for (const auto& writer : writers) {
-        writer->tick(now);
-    }
 }
 
 } // namespace fieldcast::service

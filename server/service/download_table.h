@@ -2,7 +2,8 @@
 #pragma once
 
 #include "server/metrics/registry.h"
-#include "server/service/scene_writer.h"
+#include "server/service/catalog_call.h"
+#include "server/session/limits.h"
 
 #include <map>
 #include <string>
@@ -19,20 +20,11 @@ public:
     /// A place for a download by `peer`: its id, or a message that names the limit.
     tl::expected<std::uint64_t, std::string> admit(const std::string& peer);
 
-    /// `writer` takes the place `id`.
-    void add(std::uint64_t id, const std::shared_ptr<SceneWriter>& writer);
-    void remove(std::uint64_t id, DownloadEnd end, std::uint64_t bytes_sent);
-
-    /// Cuts those that do not read.
-    void tick(SceneWriter::Clock::time_point now);
+    void remove(std::uint64_t id, CallEnd end, std::uint64_t bytes_sent);
 
 private:
-    struct Place {
-        std::string peer;
-        std::weak_ptr<SceneWriter> writer;
-    };
     struct State {
-        std::map<std::uint64_t, Place> places;
+        std::map<std::uint64_t, std::string> places; ///< whose
         std::uint64_t next_id = 1;
     };
 

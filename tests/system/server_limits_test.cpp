@@ -2,6 +2,8 @@
 // Limits per peer and in total, over gRPC.
 #include "served_channel.h"
 
+#include <future>
+#include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
 namespace fieldcast::test {
@@ -137,6 +139,64 @@ TEST(ServiceLimits, BytesOfMessagesCountBeforeAnybodyReadsThem) {
     EXPECT_EQ(refused->refused().field(), "resume_token");
     other.half_close();
     EXPECT_TRUE(other.finish().ok());
+}
+
+/// A call that is begun, and whose request never comes.
+class BegunCall final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
+public:
+    BegunCall(const std::shared_ptr<grpc::Channel>& channel, const std::string& method) : stub_(channel) {
+        context_.set_wait_for_ready(true);
+        stub_.PrepareBidiStreamingCall(&context_, method, grpc::StubOptions(), this);
+        StartCall();
+    }
+    void OnDone(const grpc::Status& status) override { status_.set_value(status); }
+
+    /// How the server ended it; nothing: it did not, in all that time.
+    std::optional<grpc::Status> end() {
+        auto status = status_.get_future();
+        if (status.wait_for(kCallDeadline) == std::future_status::ready) {
+            return status.get();
+        }
+        context_.TryCancel();
+        status.wait();
+        return std::nullopt;
+    }
+
+private:
+    grpc::GenericStub stub_;
+    grpc::ClientContext context_;
+    std::promise<grpc::Status> status_;
+};
+
+TEST(ServiceLimits, CallsWithoutARequestAreCut) {
+    ServedChannel served({.configure_deadline = 1500ms});
+    Bystander bystander(served.port());
+    const auto connection = connect(served.port());
+    std::vector<std::unique_ptr<BegunCall>> calls;
+    for (const char* const method : {"GetServerInfo", "ListChannels", "FetchScene"}) {
+        for (int i = 0; i < 20; ++i) {
+            calls.push_back(std::make_unique<BegunCall>(connection, std::string("/fieldcast.v1.Catalog/") + method));
+        }
+    }
+    for (const auto& call : calls) {
+        const auto status = call->end();
+        ASSERT_TRUE(status.has_value());
+        EXPECT_EQ(status->error_code(), StatusCode::DEADLINE_EXCEEDED);
+        EXPECT_EQ(status->error_message(), "the request did not come in time");
+    }
+    EXPECT_TRUE(bystander.gets_more_frames());
+    EXPECT_TRUE(Download(served.port()).finish().ok());
+    EXPECT_EQ(served.metric("fieldcast_scene_downloads_total{result=\"stalled\"}"), 0.0) << "none of them was one";
+}
+
+TEST(ServiceLimits, RequestsThatAreNoneAreRefused) {
+    ServedChannel served({});
+    std::string answer;
+    const auto connection = connect(served.port());
+    EXPECT_EQ(call_raw(*connection, "/fieldcast.v1.Catalog/FetchScene", "\xFF\xFF", answer).error_code(),
+              StatusCode::INVALID_ARGUMENT);
+    EXPECT_TRUE(call_raw(*connection, "/fieldcast.v1.Catalog/ListChannels", "", answer).ok());
+    EXPECT_NE(answer.find("synthetic"), std::string::npos);
 }
 
 TEST(ServiceLimits, SceneDownloadsAreLimitedAndCounted) {

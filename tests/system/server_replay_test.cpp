@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording behind the real service: the server's whole path without Vulkan.
+#include "core/lightfield/frame_rate.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"
@@ -7,6 +8,7 @@
 #include "test_folder.h"
 
 #include <atomic>
+#include <future>
 #include <gtest/gtest.h>
 #include <thread>
 
@@ -118,6 +120,31 @@ bool read_configured(test::OpenCall& call) {
         }
     }
     return false;
+}
+
+TEST(Replay, OfFramesANanosecondApartIsBounded) {
+    const test::TestFolder folder;
+    const auto file = folder / "hasty.fcrec";
+    test::write_synthetic_recording(file, {"views:2x2:16x8"}, kFrames, test::synthetic_info("hall"),
+                                    std::chrono::nanoseconds(1));
+    testing::internal::CaptureStderr();
+    metrics::Registry registry;
+    recording::Replay replay({.file = file, .name = "", .frames_per_second = std::nullopt}, registry);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("recording faster than it is replayed"), std::string::npos);
+    std::atomic<int> frames = 0;
+    std::promise<void> enough;
+    constexpr int kSeen = 150; // more than half a second's worth: a replay that lags catches up after that
+    const auto begin = std::chrono::steady_clock::now();
+    const auto watch =
+        feed::Feed::subscribe(replay.feed(), replay.feed()->info().recorded.at(0), [&](const feed::FramePtr&) {
+            if (++frames == kSeen) {
+                enough.set_value();
+            }
+        });
+    ASSERT_TRUE(watch.has_value()) << watch.error();
+    ASSERT_EQ(enough.get_future().wait_for(20s), std::future_status::ready);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    EXPECT_GE(took.count(), (kSeen - 1) / static_cast<double>(kMaxFramesPerSecond));
 }
 
 TEST_F(ServedReplay, ClientsComeAndGo) {
