@@ -7,6 +7,7 @@
 #include "server/access/listening_rule.h"
 #include "server/feed/channel_info.h"
 #include "server/ops/limit_flags.h"
+#include "server/ops/output_files.h"
 #include "server/ops/recording_flags.h"
 
 #include <algorithm>
@@ -118,6 +119,13 @@ void check_serving(const Config& config, Problems& problems) {
     }
 }
 
+/// Whether one process cannot listen on both.
+bool collide(const HostPort& a, const HostPort& b) {
+    const auto is_any = [](const std::string& host) { return host == "0.0.0.0" || host == "[::]"; };
+    const auto name = [](const std::string& host) { return host == "localhost" ? std::string("127.0.0.1") : host; };
+    return a.port != 0 && a.port == b.port && (is_any(a.host) || is_any(b.host) || name(a.host) == name(b.host));
+}
+
 /// Runs `check`, which throws UserError.
 template <class Check> void expect_usable(Problems& problems, const char* flag, const Check& check) {
     try {
@@ -145,6 +153,8 @@ void check_access(const Config& config, Problems& problems) {
         }
         expect(problems, config.metrics_listen->port != 0 || config.metrics_port_file.has_value(), "--metrics-listen",
                "port 0", "only together with --metrics-port-file, which tells the port");
+        expect(problems, !collide(config.listen, *config.metrics_listen), "--metrics-listen",
+               to_text(*config.metrics_listen), "--listen has this port, too; take another one");
     }
     if (security.tokens) {
         expect_usable(problems, "--tokens", [&] { access::TokenList::read(*security.tokens); });
@@ -164,6 +174,8 @@ std::vector<std::string> problems_of(const Config& config) {
     check_rendering(config, problems);
     check_serving(config, problems);
     check_access(config, problems);
+    const Problems of_outputs = output_problems(config);
+    problems.insert(problems.end(), of_outputs.begin(), of_outputs.end());
     const Problems of_recordings = recording_problems(config);
     problems.insert(problems.end(), of_recordings.begin(), of_recordings.end());
     return problems;

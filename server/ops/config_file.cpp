@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/config_file.h"
 
+#include "core/base/flag_problem.h"
 #include "core/base/toml_file.h"
 
 #include <algorithm>
@@ -83,7 +84,7 @@ std::string value_text(const CLI::Option& option, const std::vector<std::string>
 
 FileArguments read_config_file(const std::filesystem::path& file, const CLI::App& app) {
     const TomlFile toml = read_toml(file);
-    FileArguments result{.arguments = {}, .places = {}, .problems = toml.problems};
+    FileArguments result{.arguments = {}, .places = {}, .problems = toml.problems, .is_parsed = toml.is_parsed};
     for (const TomlEntry& entry : toml.entries) {
         const std::string place = file.string() + ":" + std::to_string(entry.line);
         if (const CLI::Option* const option = find_setting(app, entry.key)) {
@@ -95,6 +96,13 @@ FileArguments read_config_file(const std::filesystem::path& file, const CLI::App
         }
     }
     return result;
+}
+
+std::string problem_text(const CLI::ParseError& error, const CLI::App& app) {
+    return flag_problem(error.get_name(), error.what(), [&](const std::string& flag) {
+        const CLI::Option* const option = app.get_option_no_throw(flag);
+        return option == nullptr ? std::string() : option->get_type_name();
+    });
 }
 
 std::string flag_name(const std::string& argument) {

@@ -17,7 +17,11 @@ struct FileArguments {
     std::vector<std::string> arguments; ///< "--fps=12"
     Places places;
     std::vector<std::string> problems; ///< each with file, line and key
+    bool is_parsed = true;             ///< false: the problem is the file as a whole
 };
+
+/// What is wrong with a flag's value, for people.
+std::string problem_text(const CLI::ParseError& error, const CLI::App& app);
 
 /// Keys are the long names of `app`'s flags without dashes. Flags that `app` has been given are left out: they win.
 FileArguments read_config_file(const std::filesystem::path& file, const CLI::App& app);

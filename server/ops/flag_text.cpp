@@ -257,4 +257,13 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_word("--log-level", text.log_level, kLevels, config.log_level, problems);
 }
 
+image::LightFieldProducts read_products(const std::vector<std::string>& words) {
+    const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
+    return {.quilt = has("quilt"),
+            .views = has("views"),
+            .contact_sheet = has("contact-sheet"),
+            .look_around = has("look-around"),
+            .source_exr = has("exr")};
+}
+
 } // namespace fieldcast::ops

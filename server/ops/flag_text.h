@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/image/light_field_files.h"
 #include "server/ops/config.h"
 #include "server/ops/recording_flags.h"
 
@@ -55,5 +56,8 @@ void apply_preset(FlagText& text, Config& config);
 
 /// Fills `config` from `text`; adds a line to `problems` for everything that cannot be read.
 void read_text(const FlagText& text, Config& config, std::vector<std::string>& problems);
+
+/// What `render --write` names.
+image::LightFieldProducts read_products(const std::vector<std::string>& words);
 
 } // namespace fieldcast::ops

@@ -211,15 +211,6 @@ void add_record_flags(CLI::App& app, RecordJob& job) {
             ->capture_default_str());
 }
 
-image::LightFieldProducts read_products(const std::vector<std::string>& words) {
-    const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
-    return {.quilt = has("quilt"),
-            .views = has("views"),
-            .contact_sheet = has("contact-sheet"),
-            .look_around = has("look-around"),
-            .source_exr = has("exr")};
-}
-
 /// The word in front of the flags.
 enum class Task : std::uint8_t { kServe, kRender, kRecord };
 
@@ -284,7 +275,7 @@ std::vector<std::string> parse(CommandLine& line, std::vector<std::string> argum
     } catch (const CLI::Success&) {
         throw; // --help, --version
     } catch (const CLI::ParseError& error) {
-        problems.emplace_back(error.what());
+        problems.push_back(problem_text(error, line.app));
     }
     for (const std::string& extra : line.app.remaining(true)) {
         const std::string nearest = nearest_flag(flag_name(extra), line.app);
@@ -314,6 +305,11 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
     FileArguments file;
     if (!typed.config_file.empty()) {
         file = read_config_file(typed.config_file, typed.app);
+        if (!file.is_parsed) {
+            Invocation refused; // with no further problems: what seems to be missing may stand in it
+            refused.problems = file.problems;
+            return refused;
+        }
         check_each(file);
     }
     std::vector<std::string> merged(file.arguments);

@@ -105,10 +105,12 @@ void read_recordings(const RecordingText& text, Config& config, std::vector<std:
                                   .frames_per_second = config.replay_fps});
     }
     for (const std::string& typed : text.forms) {
-        if (const auto form = recording::parse_form(typed)) {
+        const auto form = recording::parse_form(typed);
+        const auto problem = form && form->grid ? grid_problem(*form->grid) : std::nullopt;
+        if (form && !problem) {
             config.record_forms.push_back(*form);
         } else {
-            problems.push_back("--record-form " + typed + ": " + recording::kFormSyntax);
+            problems.push_back("--record-form " + typed + ": " + problem.value_or(recording::kFormSyntax));
         }
     }
     if (config.record_forms.empty()) {
@@ -120,6 +122,13 @@ std::vector<std::string> recording_problems(const Config& config) {
     std::vector<std::string> problems;
     check_replays(config, problems);
     check_records(config, problems);
+    for (const recording::Form& form : config.record_forms) {
+        const glm::uvec2 size = form.size_px.value_or(glm::uvec2(1));
+        if (size.x == 0 || size.y == 0 || size.x > config.width_px || size.y > config.height_px) {
+            problems.push_back("--record-form " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                               ": a view has at least 1 pixel on each side and at most as many as the source, see --size");
+        }
+    }
     if (config.record_forms.size() > kMaxForms) {
         problems.emplace_back("--record-form: at most 64");
     }

@@ -15,7 +15,13 @@ std::shared_ptr<CatalogCall> CatalogCall::open(grpc::CallbackServerContext& cont
 }
 
 void CatalogCall::OnReadDone(bool ok) {
-    state_.lock()->step = Step::kBetween;
+    {
+        auto state = state_.lock();
+        if (state->is_over) { // it came too late
+            return;
+        }
+        state->step = Step::kBetween;
+    }
     if (!ok) {
         end(CallEnd::kCancelled, to_status(Problem::kInvalid, "the call ended without a request"));
         return finish_unless_pinned();
@@ -79,22 +85,25 @@ void CatalogCall::finish_unless_pinned() {
 
 void CatalogCall::tick(Clock::time_point now) {
     const bool is_revoked = !setup_.is_admitted();
+    bool is_writing = false;
     {
         auto state = state_.lock();
-        const auto deadline = state->step == Step::kReading ? setup_.request_deadline : setup_.stall_deadline;
-        const bool is_late = now - state->step_begun >= deadline;
+        is_writing = state->step == Step::kWriting;
+        const bool is_late = now - state->step_begun >= (is_writing ? setup_.stall_deadline : setup_.request_deadline);
         if (state->step == Step::kBetween || state->verdict || !(is_late || is_revoked)) {
             return;
         }
-        const char* const what =
-            state->step == Step::kReading ? "the request did not come in time" : "the client does not read";
+        const char* const what = is_writing ? "the client does not read" : "the request did not come in time";
         state->end = is_revoked ? CallEnd::kRevoked : CallEnd::kStalled;
         state->verdict = is_revoked ? to_status(Problem::kUnauthenticated, "the token of this call was revoked")
                                     : to_status(Problem::kTooLate, what);
-        state->is_pinned = true; // a call that waits for its read or write has not finished: the context is there
+        state->is_pinned = is_writing; // then it has not finished, and the context is there
+        state->is_over = !is_writing;  // a read under way does not keep it from finishing
     }
-    context_.TryCancel(); // what is under way comes back with ok == false
-    state_.lock()->is_pinned = false;
+    if (is_writing) {
+        context_.TryCancel(); // the write comes back with ok == false
+        state_.lock()->is_pinned = false;
+    }
     finish_unless_pinned();
 }
 

@@ -37,6 +37,7 @@ fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_protocol_page_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_typos_test.cpp
     DEPENDS fieldcast_server_ops)
 find_package(OpenSSL REQUIRED)
 add_library(certificate_authority STATIC ${CMAKE_CURRENT_LIST_DIR}/certificate_authority.cpp)
@@ -143,6 +144,11 @@ fieldcast_test(channels_process_test LABELS gpu system TIMEOUT 600
 add_dependencies(channels_process_test fieldcast-server fieldcast-client)
 target_compile_definitions(channels_process_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
+fieldcast_test(start_process_test LABELS gpu system TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/start_process_test.cpp
+    DEPENDS test_program)
+add_dependencies(start_process_test fieldcast-server)
+target_compile_definitions(start_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 fieldcast_test(own_process_test LABELS gpu TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/own_process_test.cpp
     DEPENDS running_server)
