@@ -4,14 +4,8 @@
 #include "core/render/camera_record.h"
 #include "core/render/corner_views.h"
 #include "core/render/frame_parameters.h"
-#include "core/render/hole_filler.h"
+#include "core/render/grid_renderer_state.h"
 #include "core/render/kernels.h"
-#include "core/render/reflections.h"
-#include "core/render/view_history.h"
-#include "core/render/view_visibility.h"
-#include "core/render/visibility_depth.h"
-
-#include <glm/gtc/packing.hpp>
 
 namespace fieldcast::render {
 
@@ -26,69 +20,6 @@ Camera request_camera(const Camera& source, const ViewRequest& request, LatticeP
 }
 
 } // namespace
-
-struct GridRenderer::State {
-    State(const gpu::Device& d, const scene::GpuScene& s);
-
-    void resize(const SourcePlanes& source);
-    void upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners);
-    void record_visibility();
-    void record_interleave(const SourcePlanes& source);
-    void record_reproject(const FrameHeader& header);
-    /// Filters over views know nothing of rays that were looked up for one view.
-    bool wants_reflections(const FrameHeader& header) const {
-        return filter == nullptr && reflections.are_wanted(header);
-    }
-    shared::TraceListParams list_params(const FrameHeader& header) const;
-    void record_holes(FrameHeader& header);
-    void record_layers(const FrameHeader& header);
-    HoleFiller::Batch make_batch(const FrameHeader& header, const ViewRequest& asked);
-    void begin_filter(const FrameHeader& header);
-    void record_tone_map(const FrameHeader& header);
-    Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
-    DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
-    std::vector<glm::uvec2> download_visibility(std::size_t view) const;
-    std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
-
-    const gpu::Device& device;
-    const scene::GpuScene& scene;
-    gpu::Recorder recorder;
-    gpu::BindingLayout source_layout;
-    ViewVisibility view_visibility;
-    gpu::Kernel interleave_kernel;
-    gpu::Kernel reproject_kernel;
-    gpu::Kernel finish_kernel;
-    gpu::Kernel layers_kernel;
-    gpu::Kernel tone_map_kernel;
-
-    HoleFiller filler;
-    Reflections reflections;
-
-    ViewRequest request;    ///< with the corner views of the hole cascade
-    std::size_t wanted = 0; ///< views that were asked for; they come first
-    ViewHistories histories;
-    ViewFilter* filter = nullptr; ///< of this frame's views; null: they are not filtered
-    HoleCounts hole_counts;
-    std::vector<Camera> view_cameras;
-    std::uint32_t source_texels = 0; ///< of all pages
-    std::uint64_t view_pixels = 0; ///< over all views, padded
-    std::uint64_t invalid_samples = 0;
-
-    gpu::Buffer geometry; ///< of the source, interleaved
-    gpu::Buffer illumination;
-    gpu::TexelView geometry_view;
-    gpu::TexelView illumination_view;
-    gpu::BindingSet source_set;
-
-    gpu::Buffer cameras; ///< kMaxSources of sources, then of the views
-    gpu::Buffer views;   ///< ViewRecord
-    gpu::Buffer counters;
-    gpu::Buffer visibility;
-    gpu::Buffer layers;
-    gpu::Buffer radiance;
-    gpu::Buffer layer_pixels;
-    gpu::Buffer rgb8;
-};
 
 GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
     : device(d), scene(s), recorder(d),
@@ -294,13 +225,6 @@ Views GridRenderer::State::download(const FrameHeader& header, const std::vector
     return result;
 }
 
-/// (instance, primitive) of each pixel.
-std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t view) const {
-    FC_ASSERT(view < wanted, "no such view");
-    const std::size_t count = static_cast<std::size_t>(request.width_px) * request.height_px;
-    return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * view_stride(request) * view);
-}
-
 GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
     : state_(std::make_unique<State>(device, scene)) {}
 
@@ -342,47 +266,6 @@ Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& reques
     s.invalid_samples += counts[shared::kCounterInvalidSamples];
     s.hole_counts = HoleFiller::counts(counts);
     return s.download(header, counts);
-}
-
-LinearView GridRenderer::linear_view(std::size_t index) const {
-    const State& s = *state_;
-    FC_ASSERT(index < s.wanted, "no such view");
-    const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
-    const auto texels = gpu::read_buffer_as<glm::uvec2>(s.device, s.radiance, count,
-                                                        8ULL * view_stride(s.request) * index);
-    LinearView view{s.request.width_px, s.request.height_px, {}};
-    view.pixels.reserve(count);
-    for (const glm::uvec2 texel : texels) {
-        const glm::vec2 rg = glm::unpackHalf2x16(texel.x);
-        view.pixels.emplace_back(rg.x, rg.y, glm::unpackHalf2x16(texel.y).x);
-    }
-    return view;
-}
-
-std::vector<float> GridRenderer::view_depth(std::size_t index) const {
-    return depth_of_visibility(state_->scene, state_->view_cameras.at(index), state_->download_visibility(index));
-}
-
-std::vector<std::uint32_t> GridRenderer::view_instances(std::size_t index) const {
-    std::vector<std::uint32_t> instances;
-    for (const glm::uvec2 seen : state_->download_visibility(index)) {
-        instances.push_back(seen.x); // shared::kNoInstance is scene::kNone
-    }
-    return instances;
-}
-
-std::vector<bool> GridRenderer::hole_mask(std::size_t index) const {
-    const State& s = *state_;
-    FC_ASSERT(index < s.wanted, "no such view");
-    return s.filler.mask(static_cast<std::uint32_t>(index));
-}
-
-HoleCounts GridRenderer::hole_counts() const {
-    return state_->hole_counts;
-}
-
-std::uint64_t GridRenderer::invalid_sample_count() const {
-    return state_->invalid_samples;
 }
 
 } // namespace fieldcast::render

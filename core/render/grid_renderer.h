@@ -8,6 +8,7 @@
 #include "core/scene/gpu_scene.h"
 
 #include <memory>
+#include <span>
 
 namespace fieldcast::render {
 
@@ -31,6 +32,16 @@ public:
     /// appended. The scene must be posed for the source's scene time. Throws UserError if the views are to be filtered
     /// and are more than the device has room for.
     Views render(const SourcePlanes& source, const ViewRequest& request);
+
+    /// Bytes of the device's memory per pixel of views: what they take while they are made, and what is kept of them.
+    static std::uint64_t bytes_per_pixel(const RenderSettings& settings);
+
+    /// What render() would have to allocate for `request`; 0: nothing.
+    std::uint64_t missing_bytes(const RenderSettings& settings, const ViewRequest& request) const;
+
+    /// Gives back what is kept of views of other geometries, fields of view and sizes than those of `requests`, and room
+    /// for more pixels than they have. Nothing of the last render() can be asked any more.
+    void forget_all_but(std::span<const ViewRequest> requests);
 
     /// Linear image of view `index` of the last render().
     LinearView linear_view(std::size_t index) const;

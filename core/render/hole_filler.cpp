@@ -36,6 +36,13 @@ HoleFiller::HoleFiller(const gpu::Device& device, const scene::GpuScene& scene, 
       keep_(make_plain_kernel(device, KernelId::kKeepHoles, sizeof(shared::KeepHolesParams))),
       frame_records_(device, 2 * sizeof(shared::HoleFrame)) {}
 
+void HoleFiller::forget() {
+    batch_ = {};
+    blocks_ = {};
+    lists_ = {};
+    filtered_ = {};
+}
+
 void HoleFiller::begin(gpu::Recorder& recorder, const Batch& batch, const gpu::Buffer& cameras) {
     batch_ = batch;
     const std::uint32_t tiles = gpu::groups_for(batch.width, shared::kHoleTileWidth) *

@@ -44,6 +44,9 @@ public:
     /// Binding set 1 of all its kernels has `source_layout`.
     HoleFiller(const gpu::Device& device, const scene::GpuScene& scene, const gpu::BindingLayout& source_layout);
 
+    /// Gives back the memory of what was filled last; its history may go.
+    void forget();
+
     /// Views of one frame.
     struct Batch {
         HoleHistory* history = nullptr; ///< must outlive the frame

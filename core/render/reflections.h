@@ -21,6 +21,7 @@ public:
 
     /// Makes room for the list.
     void resize(std::uint64_t view_pixels);
+    void forget() { pixels_ = {}; } ///< gives the room back
     const gpu::Buffer& pixels() const { return pixels_; } ///< the list; its length is kCounterReflections
 
     /// `params`: everything but the list. After reprojection, before layers are composited.

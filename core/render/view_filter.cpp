@@ -19,13 +19,13 @@ constexpr std::uint64_t kBytesToAccumulate = 2 * (16 + 2 * 16 + 16 + 4) + 2 * 16
 constexpr std::uint64_t kBytesToDenoise = 2 * 2 * 16;
 constexpr std::uint64_t kBytesToFit = sizeof(shared::HistoryTaps) + (2 * sizeof(shared::BlockFit) + 1023) / 1024;
 
-std::uint64_t bytes_per_pixel(const RenderSettings& settings) {
+} // namespace
+
+std::uint64_t ViewFilter::bytes_per_pixel(const RenderSettings& settings) {
     const bool denoises = settings.route == Route::kRed && settings.denoiser != Denoiser::kNone;
     return kBytesToAccumulate + (denoises ? kBytesToDenoise : 0) +
            (denoises && settings.denoiser == Denoiser::kBmfr ? kBytesToFit : 0);
 }
-
-} // namespace
 
 ViewFilter::ViewFilter(const gpu::Device& device, const scene::GpuScene& scene)
     : device_(device), scene_(scene), filter_(device, scene), groups_(device),

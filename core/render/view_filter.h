@@ -19,6 +19,9 @@ public:
     /// Whether the settings ask for it in this frame.
     static bool is_wanted(const FrameHeader& header);
 
+    static std::uint64_t bytes_per_pixel(const RenderSettings& settings);
+    std::uint32_t texel_count() const { return request_.width_px * request_.height_px * view_count(); } ///< last frame's
+
     /// How many pixels, over all views, the device has room for.
     static std::uint64_t max_pixels(const gpu::Device& device, const RenderSettings& settings);
 
@@ -44,7 +47,6 @@ public:
 
 private:
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request_.positions.size()); }
-    std::uint32_t texel_count() const { return request_.width_px * request_.height_px * view_count(); }
     FilterFrame make_frame(const FrameHeader& header, const Targets& targets) const;
 
     const gpu::Device& device_;

@@ -7,6 +7,12 @@ namespace fieldcast::render {
 
 namespace {
 
+/// Geometry, field of view and size.
+ViewRequest kind_of(ViewRequest request) {
+    request.positions.clear();
+    return request;
+}
+
 /// Room for one more in `kept`.
 template <class T> void forget_oldest(std::vector<std::unique_ptr<T>>& kept) {
     constexpr std::size_t kMaxKept = 4;
@@ -33,8 +39,7 @@ HistoryOfHoles& ViewHistories::holes(const ViewRequest& request) {
 ViewFilter& ViewHistories::filter(const ViewRequest& request) {
     constexpr std::uint64_t kForgottenAfter = 64; // uses of other views
     std::erase_if(filters_, [&](const auto& kept) { return use_count_ - kept->last_use > kForgottenAfter; });
-    ViewRequest kind = request;
-    kind.positions.clear();
+    ViewRequest kind = kind_of(request);
     auto found = std::ranges::find_if(filters_, [&](const auto& kept) { return kept->kind == kind; });
     if (found == filters_.end()) {
         forget_oldest(filters_);
@@ -43,6 +48,21 @@ ViewFilter& ViewHistories::filter(const ViewRequest& request) {
     }
     (*found)->last_use = ++use_count_;
     return (*found)->filter;
+}
+
+std::uint64_t ViewHistories::missing_pixels(const ViewRequest& request) const {
+    const std::uint64_t pixels = std::uint64_t{request.width_px} * request.height_px * request.positions.size();
+    const auto found = std::ranges::find(filters_, kind_of(request), [](const auto& kept) { return kept->kind; });
+    const std::uint64_t has = found == filters_.end() ? 0 : (*found)->filter.texel_count();
+    return pixels - std::min(pixels, has);
+}
+
+void ViewHistories::forget_all_but(std::span<const ViewRequest> requests) {
+    const auto is_wanted = [&](const ViewRequest& kind) {
+        return std::ranges::any_of(requests, [&](const ViewRequest& wanted) { return kind_of(wanted) == kind; });
+    };
+    std::erase_if(holes_, [&](const auto& kept) { return !is_wanted(kind_of(kept->request)); });
+    std::erase_if(filters_, [&](const auto& kept) { return !is_wanted(kept->kind); });
 }
 
 } // namespace fieldcast::render

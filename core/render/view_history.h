@@ -5,6 +5,7 @@
 #include "core/render/view_filter.h"
 
 #include <memory>
+#include <span>
 
 namespace fieldcast::render {
 
@@ -27,6 +28,12 @@ public:
 
     /// Of views of this geometry, field of view and size: where their number changes, kernels and room are kept.
     ViewFilter& filter(const ViewRequest& request);
+
+    /// Room that the filter of these views, if the settings ask for one, has not got.
+    std::uint64_t missing_pixels(const ViewRequest& request) const;
+
+    /// Forgets views of other kinds than those of `requests`.
+    void forget_all_but(std::span<const ViewRequest> requests);
 
 private:
     struct Filter {
