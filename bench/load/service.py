@@ -57,7 +57,7 @@ class Server:
             [arguments.build / "server/fieldcast-server", "--replay", arguments.recording, "--log-level", "warn",
              "--listen", f"127.0.0.1:{port}", "--port-file", self.files[0], "--metrics-listen", "127.0.0.1:0",
              "--metrics-port-file", self.files[1], "--max-sessions", "4096", "--max-sessions-per-peer", "4096",
-             "--max-opens-per-second-per-peer", "100000"], stderr=subprocess.DEVNULL)
+             "--max-opens-per-second-per-peer", "100000", "--max-pixels-per-peer", "1000000000000"], stderr=subprocess.DEVNULL)
         while not all(file.exists() and file.read_text().strip() for file in self.files):
             if self.process.poll() is not None:
                 raise SystemExit("the server ended: is the recording there?")

@@ -81,6 +81,7 @@ void Admission::observe(Id id, Seconds used) {
         return; // its last frame
     }
     Camera& camera = found->second;
+    camera.last_frame = now_;
     if (camera.uncounted > 0) {
         --camera.uncounted;
         return;
@@ -107,7 +108,7 @@ std::uint32_t Admission::cameras_of(const std::string& channel) const {
 double Admission::promised_ms_per_second(const std::string& channel) const {
     double sum = 0.0;
     for (const auto& [id, camera] : cameras_) {
-        sum += camera.channel == channel ? promise(camera) : 0.0;
+        sum += camera.channel == channel ? charge(camera) : 0.0;
     }
     return sum;
 }
@@ -115,6 +116,15 @@ double Admission::promised_ms_per_second(const std::string& channel) const {
 std::size_t Admission::places() const {
     return static_cast<std::size_t>(
         std::ranges::count_if(cameras_, [&](const auto& entry) { return has_place(entry.first); }));
+}
+
+bool Admission::is_idle(const Camera& camera) const {
+    const bool has_stopped = camera.load.frames_per_second == 0.0F;
+    return has_stopped || (camera.last_frame && now_ - *camera.last_frame > kIdleAfter);
+}
+
+double Admission::charge(const Camera& camera) const {
+    return is_idle(camera) ? 0.0 : promise(camera);
 }
 
 double Admission::promise(const Camera& camera) const {
@@ -127,8 +137,8 @@ std::optional<Rejection> Admission::time_problem(Id except, std::optional<Id> re
     bool is_alone = true;
     for (const auto& [id, camera] : cameras_) {
         if (id != except && id != replaced) {
-            others += promise(camera);
-            is_alone = is_alone && camera.load.frames_per_second == 0.0F; // that one has stopped
+            others += charge(camera);
+            is_alone = is_alone && is_idle(camera);
         }
     }
     const double asked = promise(wanted);

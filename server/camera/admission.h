@@ -37,13 +37,21 @@ struct Rejection {
 
 /// Keeps the promised device time within the limits. A promise is frame rate × time of a frame; that time begins as an
 /// estimate and follows what the frames really take. Whoever is alone always gets what it wants, so that slow devices
-/// serve somebody. Not thread-safe.
+/// serve somebody. A camera that has stopped rendering, because its client takes no frames, is charged nothing until it
+/// renders again. Not thread-safe.
 class Admission {
 public:
     using Id = std::uint64_t;
     using Seconds = std::chrono::duration<double>;
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    /// Without a frame for longer, a camera is idle.
+    static constexpr std::chrono::seconds kIdleAfter{5};
 
     explicit Admission(const Limits& limits) : limits_(limits) {}
+
+    /// It is `now`; must not go backwards.
+    void look_at_clock(TimePoint now) { now_ = now; }
 
     /// Of frames of the cameras of `channel`.
     void estimate(const std::string& channel, const FrameCost& cost);
@@ -78,15 +86,19 @@ private:
         std::optional<Id> replaced = std::nullopt; ///< whose place it takes when that has left
         double correction = 1.0;                   ///< of its own frames
         int uncounted = 0;                         ///< frames still to come that do not count
+        std::optional<TimePoint> last_frame = std::nullopt; ///< unset: it is still being made
     };
 
     std::size_t places() const;                 ///< that are taken
+    bool is_idle(const Camera& camera) const;
     double promise(const Camera& camera) const; ///< ms per second
+    double charge(const Camera& camera) const;  ///< its promise, while it is not idle
     std::optional<Rejection> time_problem(Id except, std::optional<Id> replaced, const Camera& wanted) const;
 
     const Limits limits_;
     std::map<std::string, Channel> channels_;
     std::map<Id, Camera> cameras_;
+    TimePoint now_{};
 };
 
 } // namespace fieldcast::camera

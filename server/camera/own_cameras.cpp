@@ -94,6 +94,7 @@ tl::expected<OwnCameras::Id, Rejection> OwnCameras::add(const std::shared_ptr<co
     {
         auto state = state_.lock();
         id = ++state->last_id;
+        state->admission.look_at_clock(Clock::now());
         problem = state->admission.admit(id, channel->info.name, load, replaced);
         if (!problem) {
             state->cameras.emplace(id, Camera{.channel = channel, .feed = feed, .running = nullptr});
@@ -114,6 +115,7 @@ std::optional<std::string> OwnCameras::change(Id id, const feed::CameraLoad& loa
         auto state = state_.lock();
         const Camera& camera = state->cameras.at(id);
         channel = camera.channel->info.name;
+        state->admission.look_at_clock(Clock::now());
         problem = state->admission.change(id, load);
         if (!problem) {
             camera.feed->set_frames_per_second(load.frames_per_second);
@@ -141,7 +143,9 @@ void OwnCameras::close(Id id) {
 }
 
 void OwnCameras::observe(Id id, std::chrono::duration<double> used) {
-    state_.lock()->admission.observe(id, used);
+    auto state = state_.lock();
+    state->admission.look_at_clock(Clock::now());
+    state->admission.observe(id, used);
 }
 
 std::chrono::nanoseconds OwnCameras::waiting_time(const ChannelSetup* channel, Clock::time_point now) {
@@ -233,13 +237,14 @@ std::shared_ptr<void> OwnCameras::make(Id id, const ChannelSetup& channel, const
 
 void OwnCameras::collect(metrics::Page& page) {
     auto state = state_.lock();
+    state->admission.look_at_clock(Clock::now());
     for (const std::string& channel : state->channels) {
         const metrics::Labels labels{{"channel", channel}};
         page.add_gauge({"fieldcast_own_cameras", "Cameras that belong to one client each, also those that are just "
                                                  "being made or ended."},
                        labels, static_cast<double>(state->admission.cameras_of(channel)));
-        page.add_gauge({"fieldcast_own_camera_promised_ratio", "Seconds of the device per second that own cameras were "
-                                                               "promised."},
+        page.add_gauge({"fieldcast_own_camera_promised_ratio", "Seconds of the device per second that own cameras which "
+                                                               "render were promised."},
                        labels, state->admission.promised_ms_per_second(channel) * 1e-3);
     }
 }

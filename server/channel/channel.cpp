@@ -37,6 +37,11 @@ void wait_for_next_frame(const feed::Feed& feed, Clock::time_point begin, const 
     }
 }
 
+feed::ChannelInfo with_memory(feed::ChannelInfo info, std::shared_ptr<feed::ViewMemory> memory) {
+    info.view_memory = std::move(memory);
+    return info;
+}
+
 /// Whether nothing works on it any more.
 bool is_lost(const gpu::Device& device) {
     try {
@@ -52,7 +57,7 @@ bool is_lost(const gpu::Device& device) {
 
 Channel::Channel(const Shared& shared, const ops::ChannelChoice& choice)
     : device_(shared.device), renderer_(shared.device, shared.config, choice), clock_(shared.config, renderer_.scene()),
-      feed_(std::make_shared<feed::Feed>(renderer_.info())), metrics_(shared.registry, feed_->info().name),
+      feed_(std::make_shared<feed::Feed>(with_memory(renderer_.info(), shared.view_memory))), metrics_(shared.registry, feed_->info().name),
       place_(shared.turns), encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
       render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}
 
@@ -89,11 +94,12 @@ void Channel::render_loop(const std::stop_token& stop) {
     std::uint64_t frame_id = 0;
     std::uint64_t reported_samples = 0;
     while (wait_for_demand(stop)) {
-        const feed::Demand demand = feed_->demand();
-        if (demand.empty()) {
+        forget_views();
+        const auto begin = Clock::now();
+        const feed::Demand demand = feed_->demand(begin);
+        if (demand.empty() && !demand.is_awaited) {
             continue; // the last one has just gone
         }
-        const auto begin = Clock::now();
         std::optional<RenderedFrame> frame = render_in_turn(++frame_id, demand, stop);
         if (!frame) {
             return;
@@ -105,10 +111,18 @@ void Channel::render_loop(const std::stop_token& stop) {
             log::warn("invalid samples", {{"channel", feed_->info().name}, {"count", invalid_samples}});
             reported_samples = invalid_samples;
         }
-        if (!rendered_.put(std::move(*frame), stop)) {
+        if (!demand.empty() && !rendered_.put(std::move(*frame), stop)) {
             return;
         }
         wait_for_next_frame(*feed_, begin, stop);
+    }
+}
+
+void Channel::forget_views() {
+    if (const auto wanted = feed_->surplus(Clock::now())) {
+        renderer_.forget_views(*wanted);
+        feed_->forgot_all_but(*wanted);
+        log::debug("views forgotten", {{"channel", feed_->info().name}, {"wanted_pixels", wanted->view_pixels()}});
     }
 }
 

@@ -15,7 +15,8 @@
 
 namespace fieldcast::channel {
 
-/// Scene + camera + time + lattice of views: renders while somebody subscribes to its feed, sleeps otherwise.
+/// Scene + camera + time + lattice of views: renders what those subscribers of its feed want that could take the frame,
+/// and sleeps while there are none.
 /// One thread renders, one encodes and publishes the frame before; neither ever waits for a client.
 class Channel {
 public:
@@ -25,6 +26,7 @@ public:
         const ops::Config& config;
         DeviceTurns& turns; ///< at `device`
         metrics::Registry& registry;
+        std::shared_ptr<feed::ViewMemory> view_memory; ///< that clients may make all channels take
     };
 
     /// Ready to serve when constructed; rendering starts with the first subscriber. What `shared` refers to must
@@ -54,6 +56,7 @@ private:
                                                 const std::stop_token& stop);
     FrameMoment next_moment(ChannelClock::TimePoint now); ///< of the frame that begins now
     bool wait_for_demand(const std::stop_token& stop); ///< false: stopped
+    void forget_views(); ///< that nobody has wanted for a while
     void encode_loop(const std::stop_token& stop);
     void log_frame(const RenderedFrame& frame) const;
 

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/gpu/free_memory.h"
 #include "core/scene/bundle.h"
 #include "server/channel/own_channel.h"
 
@@ -26,6 +27,7 @@ ChannelList::ChannelList(const ops::Config& config, metrics::Registry& registry)
         log::info("device", {{"name", device_->info().name}, {"driver", device_->info().driver}});
     }
     start_channels(config, registry);
+    limit_view_memory(config);
     start_replays(config, registry);
     start_recorders(config, registry);
 }
@@ -42,7 +44,8 @@ void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
 void ChannelList::start_channels(const ops::Config& config, metrics::Registry& registry) {
     for (const ops::ChannelChoice& choice : config.channels) {
         const auto begin = Clock::now();
-        start_channel({.device = *device_, .config = config, .turns = turns_, .registry = registry}, choice);
+        start_channel({.device = *device_, .config = config, .turns = turns_, .registry = registry,
+                       .view_memory = view_memory_}, choice);
         const feed::ChannelInfo& info = feeds_.back()->info();
         log::info("channel ready", {{"channel", info.name},
                                     {"scene", scene::to_hex(info.scene_hash)},
@@ -60,11 +63,21 @@ void ChannelList::start_channel(const Channel::Shared& shared, const ops::Channe
         return add_feed(channels_.back()->feed());
     }
     if (!own_cameras_) {
-        own_cameras_.emplace(camera::Limits{.max_cameras = shared.config.max_own_cameras,
+        own_cameras_.emplace(camera::Limits{.max_cameras = shared.config.limits.max_own_cameras,
                                             .max_ms_per_second = shared.config.own_camera_budget_ms},
                              shared.registry);
     }
     add_feed(open_own_channel(shared, choice, *own_cameras_));
+}
+
+// Half of what is free now that all channels are there: views in memory, frames on their way and others need the rest.
+void ChannelList::limit_view_memory(const ops::Config& config) {
+    if (!device_) {
+        return;
+    }
+    const std::uint64_t free = gpu::free_memory_bytes(*device_);
+    view_memory_->set_limit(config.max_view_memory.value_or(free / 2));
+    log::info("memory for views", {{"limit_bytes", view_memory_->limit()}, {"free_bytes", free}});
 }
 
 void ChannelList::start_replays(const ops::Config& config, metrics::Registry& registry) {

@@ -26,12 +26,14 @@ public:
 private:
     void start_channels(const ops::Config& config, metrics::Registry& registry);
     void start_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice);
+    void limit_view_memory(const ops::Config& config);
     void start_replays(const ops::Config& config, metrics::Registry& registry);
     void start_recorders(const ops::Config& config, metrics::Registry& registry);
     void add_feed(const std::shared_ptr<feed::Feed>& feed);
 
     std::optional<gpu::Device> device_;
     DeviceTurns turns_; ///< at the device
+    const std::shared_ptr<feed::ViewMemory> view_memory_ = std::make_shared<feed::ViewMemory>(0); ///< of the device
     std::vector<std::shared_ptr<feed::Feed>> feeds_;
     std::optional<camera::OwnCameras> own_cameras_;
     std::vector<std::unique_ptr<Channel>> channels_;

@@ -86,6 +86,7 @@ void FrameRenderer::settle_lattice(const ops::ChannelChoice& choice) {
 
 // Views that average or denoise their own light need room on the device.
 void FrameRenderer::limit_views() {
+    info_.bytes_per_view_pixel = render::GridRenderer::bytes_per_pixel(settings_);
     if (settings_.route == Route::kGreen && !settings_.accumulate_views) {
         return;
     }
@@ -97,7 +98,7 @@ void FrameRenderer::limit_views() {
                                .positions = lattice_positions(info_.largest_grid)});
     const bool is_own = info_.control == feed::CameraControl::kOwn;
     const std::uint64_t most = render::ViewFilter::max_pixels(device_, settings_);
-    info_.max_view_pixels = std::min(info_.max_view_pixels, is_own ? most / config_.max_own_cameras : most);
+    info_.max_view_pixels = std::min(info_.max_view_pixels, is_own ? most / config_.limits.max_own_cameras : most);
 }
 
 void FrameRenderer::settle_guard_band() {

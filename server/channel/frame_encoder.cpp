@@ -41,6 +41,7 @@ feed::FramePtr FrameEncoder::encode(RenderedFrame frame, TimePoint now) {
     encoded->header = frame.header;
     encoded->times = frame.times;
     encoded->key_frame_id = key.frame_id;
+    encoded->begun = frame.begun;
     if (frame.source) {
         encoded->source = wire::encode_source(*frame.source, frame.choices, key, pool_);
     }

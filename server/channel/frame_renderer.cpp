@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/channel/frame_renderer.h"
 
+#include "core/base/log.h"
+#include "core/gpu/free_memory.h"
 #include "core/render/reference_renderer.h"
 #include "core/render/setup.h"
 
@@ -92,6 +94,7 @@ RenderedFrame FrameRenderer::render(std::uint64_t frame_id, const FrameMoment& m
     frame.asked_views = demand.asked_views;
     frame.needs_alone = demand.needs_alone;
     frame.needs_key = demand.needs_key;
+    frame.begun = demand.begun;
     frame.times.pose_sampled_ns = steady_ns();
     const FrameHeader header = pose(frame_id, moment);
     frame.times.render_begin_ns = steady_ns();
@@ -129,10 +132,33 @@ SourceFrame FrameRenderer::make_planes(const render::SourcePlanes& source,
 std::vector<RenderedViews> FrameRenderer::render_views(const render::SourcePlanes& source, const feed::Demand& demand) {
     std::vector<RenderedViews> rendered;
     for (Batch& batch : batches_of(demand)) {
-        rendered.push_back(
-            {.formats = std::move(batch.formats), .views = grid_renderer_->render(source, batch.request)});
+        if (has_memory_for(batch.request)) {
+            rendered.push_back(
+                {.formats = std::move(batch.formats), .views = grid_renderer_->render(source, batch.request)});
+        }
     }
     return rendered;
+}
+
+// Admission counts what clients want; others may have taken the device's memory since.
+bool FrameRenderer::has_memory_for(const render::ViewRequest& request) const {
+    const std::uint64_t missing = grid_renderer_->missing_bytes(settings_, request);
+    const std::uint64_t free = missing > 0 ? gpu::free_memory_bytes(device_) : 0;
+    if (missing > free) {
+        log::warn("no memory for views", {{"channel", info_.name},
+                                          {"views", request.positions.size()},
+                                          {"missing_bytes", missing},
+                                          {"free_bytes", free}});
+    }
+    return missing <= free;
+}
+
+void FrameRenderer::forget_views(const feed::Demand& kept) {
+    std::vector<render::ViewRequest> requests;
+    for (Batch& batch : batches_of(kept)) {
+        requests.push_back(std::move(batch.request));
+    }
+    grid_renderer_->forget_all_but(requests);
 }
 
 std::optional<image::RgbF32> FrameRenderer::path_trace(const FrameMoment& moment, LatticePosition position,

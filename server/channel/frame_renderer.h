@@ -38,6 +38,7 @@ struct RenderedFrame {
     std::uint64_t asked_views = 0; ///< as in feed::Demand
     bool needs_alone = false;      ///< as in feed::Demand
     bool needs_key = false;        ///< as in feed::Demand
+    std::chrono::steady_clock::time_point begun{}; ///< as in feed::Demand
 };
 
 /// What a channel settles when it starts: enough for another renderer of the same on the same device.
@@ -67,7 +68,11 @@ public:
     const feed::ChannelInfo& info() const { return info_; }
     const scene::Scene& scene() const { return *scene_; }
 
+    /// Views for which the device has no memory are left out, and that is logged.
     RenderedFrame render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand);
+
+    /// Gives back the memory of all views of other geometries and sizes than those in `kept`.
+    void forget_views(const feed::Demand& kept);
 
     /// Linear radiance of one view, path traced with `samples` per pixel, nothing reused, no limits. `progress` gets
     /// the samples so far; true: stop, and the result is empty.
@@ -88,6 +93,7 @@ private:
 
     FrameHeader pose(std::uint64_t frame_id, const FrameMoment& moment);
     SourceFrame make_planes(const render::SourcePlanes& source, const std::vector<wire::PlaneChoice>& choices);
+    bool has_memory_for(const render::ViewRequest& request) const;
     std::vector<RenderedViews> render_views(const render::SourcePlanes& source, const feed::Demand& demand);
 
     const gpu::Device& device_;

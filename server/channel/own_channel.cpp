@@ -63,6 +63,7 @@ std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, cons
                                                          .begin = server->begin,
                                                          .server = server->feed});
     };
+    server->settled.info.view_memory = shared.view_memory;
     const feed::ChannelInfo& info = server->settled.info;
     auto feed = std::make_shared<feed::Feed>(info, cameras.opener({.info = info, .cost = cost, .make = make}));
     server->feed = feed;

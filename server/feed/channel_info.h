@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/lightfield/view_grid.h"
+#include "server/feed/view_memory.h"
 #include "server/feed/wish.h"
 
 #include <array>
@@ -45,7 +46,9 @@ struct ChannelInfo {
     std::chrono::milliseconds steering_lease{5'000};      ///< kSteered: without a sign of life of who steers
     std::shared_ptr<const std::vector<std::byte>> bundle; ///< what FetchScene sends; null: none
     std::uint8_t lossy_quality = 75;                      ///< of planes in a lossy codec, if the client does not say
-    std::uint64_t max_view_pixels = 0; ///< that are encoded for a frame, over all clients
+    std::uint64_t max_view_pixels = 0;                    ///< that are encoded for a frame, over all clients
+    std::uint64_t bytes_per_view_pixel = 0;               ///< that views take of the device's memory
+    std::shared_ptr<ViewMemory> view_memory{};            ///< what all channels may take; null: no limit
     std::vector<Wish> recorded{}; ///< not empty: the channel is a recording of these and can show nothing else
 };
 

@@ -4,6 +4,7 @@
 #include "core/wire/chunks.h"
 #include "server/feed/wish.h"
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,6 +18,7 @@ struct EncodedFrame {
     std::uint64_t key_frame_id = 0; ///< that strips may refer to; its own id: it is a key frame; 0: there is none
     std::optional<wire::EncodedSource> source;
     std::vector<wire::EncodedViews> views;
+    std::optional<std::chrono::steady_clock::time_point> begun{}; ///< feed::Demand::begun; unset: nobody was asked
 };
 
 using FramePtr = std::shared_ptr<const EncodedFrame>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/feed/feed.h"
 
+#include "core/base/error.h"
 #include "server/feed/frame_interval.h"
 
 #include <algorithm>
@@ -9,6 +10,10 @@
 namespace fieldcast::feed {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kNewest = 4; // a new frame counts for a quarter
 
 std::shared_ptr<Steering> steering_of(const ChannelInfo& info, bool is_opened_by_each) {
     switch (info.control) {
@@ -27,9 +32,11 @@ std::shared_ptr<Steering> steering_of(const ChannelInfo& info, bool is_opened_by
 
 Feed::Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener)
     : info_(std::move(info)), opener_(std::move(opener)), steering_(steering_of(info_, opener_ != nullptr)),
-      frames_per_second_(info_.frames_per_second) {}
+      frames_per_second_(info_.frames_per_second) {
+    state_.lock()->held = std::make_unique<HeldViews>(info_.view_memory, info_.bytes_per_view_pixel);
+}
 
-std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const {
+std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t except_id, const Wish& wish) const {
     Demand demand;
     for (const auto& [id, subscriber] : state.subscribers) {
         if (id != except_id) {
@@ -40,7 +47,8 @@ std::optional<std::string> Feed::budget_problem(const State& state, std::uint64_
     add(demand, wish);
     const std::uint64_t pixels = encoded_pixels(demand);
     if (pixels == of_others || pixels <= info_.max_view_pixels) {
-        return std::nullopt;
+        auto problem = state.held->want(demand);
+        return problem ? std::optional("channel '" + info_.name + "': " + *problem) : std::nullopt;
     }
     return "channel '" + info_.name + "' would encode " + std::to_string(pixels) +
            " pixels per frame for all clients, at most " + std::to_string(info_.max_view_pixels) +
@@ -55,7 +63,7 @@ std::uint64_t Feed::encoded_pixels(const Demand& demand) const {
 }
 
 tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
-                                                        FrameCallback callback) {
+                                                        FrameCallback callback, const Pace& pace) {
     auto shared_callback = std::make_shared<const FrameCallback>(std::move(callback));
     std::uint64_t id = 0;
     {
@@ -64,27 +72,46 @@ tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Fe
             return tl::unexpected(std::move(*problem));
         }
         id = state->next_id++;
-        if (state->subscribers.empty()) {
-            state->waiting_since = std::chrono::steady_clock::now();
-            state->is_first_due = true;
-        }
-        state->subscribers.emplace(id, Subscriber{.wish = wish, .callback = std::move(shared_callback)});
+        state->subscribers.emplace(id, Subscriber{.wish = wish,
+                                                  .pace = pace,
+                                                  .has_room_since = Clock::now(),
+                                                  .callback = std::move(shared_callback)});
+        ++state->changes;
     }
     feed->demand_changed_.notify_all();
     return Subscription(feed, id);
 }
 
-std::optional<std::string> Feed::change(std::uint64_t id, const Wish& wish) {
-    auto state = state_.lock();
-    if (auto problem = budget_problem(*state, id, wish)) {
-        return problem;
+std::optional<std::string> Feed::change(std::uint64_t id, const Wish& wish, const Pace& pace) {
+    {
+        auto state = state_.lock();
+        if (auto problem = budget_problem(*state, id, wish)) {
+            return problem;
+        }
+        Subscriber& subscriber = state->subscribers.at(id);
+        subscriber.wish = wish;
+        subscriber.pace = pace;
+        state->shrunk = Clock::now();
+        ++state->changes;
     }
-    state->subscribers.at(id).wish = wish;
+    demand_changed_.notify_all(); // it may be due at once
     return std::nullopt;
 }
 
 void Feed::set_key_need(std::uint64_t id, KeyNeed need) {
     state_.lock()->subscribers.at(id).key_need = need;
+}
+
+void Feed::set_room(std::uint64_t id, const Room& room) {
+    {
+        auto state = state_.lock();
+        Subscriber& subscriber = state->subscribers.at(id);
+        const bool gets_room = subscriber.room.taken_until && !room.taken_until;
+        subscriber.has_room_since = gets_room ? Clock::now() : subscriber.has_room_since;
+        subscriber.room = room;
+        ++state->changes;
+    }
+    demand_changed_.notify_all();
 }
 
 void Feed::remove(std::uint64_t id) {
@@ -93,34 +120,105 @@ void Feed::remove(std::uint64_t id) {
     const auto found = state->subscribers.find(id);
     removed = std::move(found->second);
     state->subscribers.erase(found);
+    Demand left;
+    for (const auto& [other, subscriber] : state->subscribers) {
+        add(left, subscriber.wish);
+    }
+    FC_ASSERT(!state->held->want(left), "less than before is always possible");
+    state->shrunk = Clock::now();
+    ++state->changes;
+    demand_changed_.notify_all(); // what nobody wants is to be forgotten later
 }
 
-Demand Feed::demand() {
-    Demand demand;
+std::optional<Demand> Feed::surplus(TimePoint now) {
     auto state = state_.lock();
-    for (const auto& [id, subscriber] : state->subscribers) {
-        add(demand, subscriber.wish);
-        add(demand, subscriber.key_need);
+    if (!state->held->has_surplus() || now < state->shrunk + kKeepViews) {
+        return std::nullopt;
+    }
+    Demand wanted;
+    wanted.views = state->held->wanted();
+    return wanted;
+}
+
+void Feed::forgot_all_but(const Demand& kept) {
+    state_.lock()->held->settle(kept.views);
+}
+
+Demand Feed::demand(TimePoint now) {
+    Demand demand;
+    demand.begun = now;
+    auto state = state_.lock();
+    for (auto& [id, subscriber] : state->subscribers) {
+        const Window window = window_of(subscriber.room, subscriber.pace, lead(*state));
+        demand.is_awaited = demand.is_awaited || (window.from - kAwaited <= now && now <= window.until);
+        if (window.contains(now)) {
+            subscriber.pace.take(now);
+            add(demand, subscriber.wish);
+            add(demand, subscriber.key_need);
+        }
     }
     return demand;
 }
 
+// A frame begins one interval after the one before, or when that one is rendered.
+Feed::TimePoint::duration Feed::lead(const State& state) const {
+    const auto interval = std::chrono::duration_cast<TimePoint::duration>(frame_interval(frames_per_second()));
+    return state.frame_time + std::max(state.frame_time, interval);
+}
+
+Feed::TimePoint Feed::wakes_at(const State& state, TimePoint now) const {
+    TimePoint earliest = state.held->has_surplus() ? state.shrunk + kKeepViews : TimePoint::max();
+    for (const auto& [id, subscriber] : state.subscribers) {
+        const Window window = window_of(subscriber.room, subscriber.pace, lead(state));
+        if (now <= window.until) {
+            earliest = std::min(earliest, window.from - kAwaited);
+        }
+    }
+    return earliest;
+}
+
+void Feed::wake() {
+    { auto state = state_.lock(); } // not between a waiter's test and its sleep
+    demand_changed_.notify_all();
+}
+
 bool Feed::wait_for_demand(const std::stop_token& stop) {
-    const std::stop_callback wake(stop, [this] {
-        { auto state = state_.lock(); } // not between a waiter's test and its sleep
-        demand_changed_.notify_all();
-    });
+    const std::stop_callback stopping(stop, [this] { wake(); });
+    auto state = state_.lock();
+    while (!stop.stop_requested()) {
+        const auto now = Clock::now();
+        const TimePoint at = wakes_at(*state, now);
+        if (at <= now) {
+            return true;
+        }
+        const std::uint64_t seen = state->changes;
+        const auto has_changed = [&](const State& s) { return stop.stop_requested() || s.changes != seen; };
+        if (at == TimePoint::max()) {
+            state.wait(demand_changed_, has_changed);
+        } else {
+            state.wait_until(demand_changed_, at, has_changed);
+        }
+    }
+    return false;
+}
+
+bool Feed::wait_for_subscribers(const std::stop_token& stop) {
+    const std::stop_callback stopping(stop, [this] { wake(); });
     auto state = state_.lock();
     state.wait(demand_changed_, [&](const State& s) { return stop.stop_requested() || !s.subscribers.empty(); });
     return !stop.stop_requested();
 }
 
-void Feed::publish(const FramePtr& frame) {
+void Feed::publish(const FramePtr& frame, TimePoint now) {
     std::vector<std::shared_ptr<const FrameCallback>> callbacks;
     {
         auto state = state_.lock();
-        state->waiting_since = std::chrono::steady_clock::now();
-        state->is_first_due = false;
+        state->published = now;
+        if (frame->begun) {
+            const auto taken = now - *frame->begun;
+            const bool is_first = state->frame_time == TimePoint::duration(0);
+            state->frame_time += is_first ? taken : (taken - state->frame_time) / kNewest;
+        }
         state->latest = {.frame_id = frame->header.frame_id, .scene_time_ns = frame->header.scene_time_ns};
         if (state->observer) {
             callbacks.push_back(state->observer);
@@ -142,13 +240,14 @@ std::chrono::nanoseconds Feed::waiting_time(std::chrono::steady_clock::time_poin
     if (opener_ != nullptr) {
         return opener_->waiting_time(now);
     }
-    const auto interval = frame_interval(frames_per_second());
+    std::chrono::nanoseconds longest(0);
+    const auto interval = std::chrono::duration_cast<TimePoint::duration>(frame_interval(frames_per_second()));
     auto state = state_.lock();
-    if (state->subscribers.empty()) {
-        return std::chrono::nanoseconds(0);
+    for (const auto& [id, subscriber] : state->subscribers) {
+        const auto since = std::max({state->published + interval, subscriber.has_room_since, subscriber.pace.due()});
+        longest = subscriber.room.taken_until ? longest : std::max<std::chrono::nanoseconds>(longest, now - since);
     }
-    const auto due = state->waiting_since + (state->is_first_due ? std::chrono::nanoseconds(0) : interval);
-    return std::max<std::chrono::nanoseconds>(now - due, std::chrono::nanoseconds(0));
+    return longest;
 }
 
 std::size_t Feed::subscriber_count() {

@@ -5,6 +5,7 @@
 #include "server/feed/channel_info.h"
 #include "server/feed/encoded_frame.h"
 #include "server/feed/feed_opener.h"
+#include "server/feed/room.h"
 #include "server/feed/steering.h"
 
 #include <atomic>
@@ -20,6 +21,8 @@
 //
 //     render loop:  feed->wait_for_demand(stop);  demand = feed->demand();  … render, encode …  feed->publish(frame);
 //     session:      subscription = Feed::subscribe(feed, wish, on_frame);   … subscription.change(wish) …
+//
+// A wish counts for a frame only if its subscriber could take that frame: its pace says that it is due, and it has room.
 namespace fieldcast::feed {
 
 /// Called by the thread that publishes, without any lock held. Must return at once and must not throw. One last call
@@ -40,6 +43,11 @@ class Subscription;
 /// All subscribers of one channel, and what they want. Thread-safe.
 class Feed {
 public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+
+    /// Before somebody wants a frame; enough for the source's averages to settle.
+    static constexpr std::chrono::seconds kAwaited{1};
+
     /// With an `opener` the feed itself never has frames: whoever wants some opens a feed of its own.
     explicit Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener = nullptr);
 
@@ -52,17 +60,27 @@ public:
     const std::shared_ptr<Steering>& steering() const { return steering_; }
 
     /// Refused, with a reason that names the limit, if what is encoded for all subscribers would exceed the pixel
-    /// budget. Whoever wants only what others get is never refused.
+    /// budget, or their views the memory of the device. Whoever wants only what others get is never refused.
     static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
-                                                             FrameCallback callback);
+                                                             FrameCallback callback, const Pace& pace = {});
 
-    Demand demand();
+    /// What a frame that begins at `now` has to contain. Each call is one frame.
+    Demand demand(TimePoint now = std::chrono::steady_clock::now());
 
-    /// Sleeps until somebody wants something. False: `stop` was requested.
+    /// Sleeps until somebody wants a frame, or will want one within kAwaited. False: `stop` was requested.
     bool wait_for_demand(const std::stop_token& stop);
 
+    /// Sleeps until there are subscribers, whether they have room or not. False: `stop` was requested.
+    bool wait_for_subscribers(const std::stop_token& stop);
+
+    /// What is wanted by whoever is there, if nobody has wanted more for kKeepViews and the channel may hold more: then it
+    /// forgets the rest, and says so. `wait_for_demand` returns when that is due.
+    std::optional<Demand> surplus(TimePoint now);
+    void forgot_all_but(const Demand& kept);
+    static constexpr std::chrono::seconds kKeepViews{5};
+
     /// Gives `frame` to every subscriber, and to the observer before.
-    void publish(const FramePtr& frame);
+    void publish(const FramePtr& frame, TimePoint now = std::chrono::steady_clock::now());
 
     /// `observer` sees every frame from now on without wanting anything.
     void observe(FrameCallback observer) {
@@ -75,8 +93,8 @@ public:
     float frames_per_second() const { return frames_per_second_; }
     void set_frames_per_second(float rate) { frames_per_second_ = rate; }
 
-    /// How long somebody has been waiting for a frame that is due; 0: nobody has.
-    std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now);
+    /// How long somebody who has room, and for whom a frame is due, has been waiting for it; 0: nobody is.
+    std::chrono::nanoseconds waiting_time(TimePoint now);
     std::size_t subscriber_count();
 
     /// The channel cannot render any more; the reason was logged.
@@ -88,6 +106,9 @@ private:
     struct Subscriber {
         Wish wish;
         KeyNeed key_need = KeyNeed::kAlone;
+        Pace pace{};
+        Room room{};
+        TimePoint has_room_since;
         std::shared_ptr<const FrameCallback> callback;
     };
     struct State {
@@ -95,15 +116,23 @@ private:
         std::shared_ptr<const FrameCallback> observer; ///< may be null
         std::uint64_t next_id = 1;
         LatestFrame latest;
-        std::chrono::steady_clock::time_point waiting_since; ///< the last frame, or the first subscriber after a pause
-        bool is_first_due = true; ///< a frame is due at once; false: an interval after `waiting_since`
+        TimePoint published{};            ///< the last frame
+        TimePoint::duration frame_time{}; ///< from the demand for a frame to its publication, lately
+        std::uint64_t changes = 0;        ///< of what `wait_for_demand` looks at
+        std::unique_ptr<HeldViews> held;  ///< in the device's memory
+        TimePoint shrunk{};               ///< when a wish went or changed
     };
 
     std::uint64_t encoded_pixels(const Demand& demand) const;
-    std::optional<std::string> budget_problem(const State& state, std::uint64_t except_id, const Wish& wish) const;
-    std::optional<std::string> change(std::uint64_t id, const Wish& wish);
+    /// Whether `wish` fits besides those of all others but `except_id`; if so, its memory is taken.
+    std::optional<std::string> budget_problem(State& state, std::uint64_t except_id, const Wish& wish) const;
+    std::optional<std::string> change(std::uint64_t id, const Wish& wish, const Pace& pace);
     void set_key_need(std::uint64_t id, KeyNeed need);
+    void set_room(std::uint64_t id, const Room& room);
     void remove(std::uint64_t id);
+    TimePoint::duration lead(const State& state) const; ///< from the demand for a frame to having it, at most
+    TimePoint wakes_at(const State& state, TimePoint now) const; ///< somebody waits for a frame; max: nobody
+    void wake(); ///< whoever waits
 
     const ChannelInfo info_;
     const std::shared_ptr<FeedOpener> opener_;
@@ -126,11 +155,16 @@ public:
     const std::shared_ptr<Feed>& feed() const { return feed_; }
 
     /// Another wish from the next frame on. On failure the old one stays; the reason names the limit.
-    std::optional<std::string> change(const Wish& wish) { return feed_->change(id_, wish); }
+    std::optional<std::string> change(const Wish& wish, const Pace& pace = {}) {
+        return feed_->change(id_, wish, pace);
+    }
     void end();
 
     /// From the next frame on; kAlone at first.
     void set_key_need(KeyNeed need) { feed_->set_key_need(id_, need); }
+
+    /// At once; it has some at first.
+    void set_room(const Room& room) { feed_->set_room(id_, room); }
 
 private:
     friend class Feed;

@@ -3,6 +3,7 @@
 
 #include "core/wire/encode.h"
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -48,6 +49,8 @@ struct Demand {
     std::uint64_t asked_views = 0;         ///< over all wishes, also those that several have in common
     bool needs_alone = false;              ///< somebody lacks the key frame
     bool needs_key = false;                ///< and would keep one
+    bool is_awaited = false; ///< somebody wants a frame soon: until then the source goes on, for the sake of its history
+    std::chrono::steady_clock::time_point begun{}; ///< when the frame begins that has all this
 
     bool empty() const { return planes.empty() && views.empty(); }
     std::uint64_t view_pixels() const;     ///< of all views together, in each of their encodings

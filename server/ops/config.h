@@ -51,7 +51,6 @@ struct Config {
     std::string camera;           ///< name of a camera node; empty: "LightField", else the first
     bool has_fixed_camera = false;
     std::chrono::milliseconds steering_lease{5'000}; ///< of steered cameras, without a sign of life of who steers
-    std::uint32_t max_own_cameras = 4;     ///< of clients that have one each, over all channels
     double own_camera_budget_ms = 1'000.0; ///< of the device per second, for all of them
     std::optional<double> fixed_time_s; ///< freezes the scene at that moment
     ClockMode clock = ClockMode::kReal;
@@ -94,6 +93,7 @@ struct Config {
     std::optional<HostPort> metrics_listen;                    ///< unset: no metrics
     std::optional<std::filesystem::path> metrics_port_file;
     timing::RecorderFiles timing_files;
+    std::optional<std::uint64_t> max_view_memory;              ///< bytes of the device; unset: half of what is free
     log::Level log_level = log::Level::kInfo;
     log::Format log_format = log::Format::kText;
 };

@@ -86,7 +86,7 @@ void Replay::publish_frames(const std::stop_token& stop) {
     Place place;
     Clock::time_point begin{};    // of the first loop; later if somebody slept
     Clock::time_point earliest{}; // for the next frame: also while a replay catches up
-    while (feed_->wait_for_demand(stop)) {
+    while (feed_->wait_for_subscribers(stop)) {
         const std::shared_ptr<feed::EncodedFrame> frame = frame_at(place); // read before its time
         const auto now = Clock::now();
         if (now > begin + time_of(place) + kLongestDelay) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/download_table.h"
 
+#include "server/session/budget.h"
+
 #include <algorithm>
 
 namespace fieldcast::service {
@@ -42,6 +44,10 @@ tl::expected<std::uint64_t, std::string> DownloadTable::admit(const std::string&
     const auto of_peer = std::ranges::count_if(state->places, [&](const auto& p) { return p.second == peer; });
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_scene_downloads_per_peer) {
         return refuse(limits_.max_scene_downloads_per_peer, "one peer may have");
+    }
+    const auto kept = session::newcomers_reserve(limits_.max_scene_downloads, limits_.max_scene_downloads_per_peer);
+    if (of_peer > 0 && state->places.size() + kept >= limits_.max_scene_downloads) {
+        return refuse(limits_.max_scene_downloads, "a server serves, but for those that are kept for newcomers,");
     }
     const std::uint64_t id = state->next_id++;
     state->places.emplace(id, peer);

@@ -22,7 +22,8 @@ NoPlace exhausted(std::string exceeded, std::string message) {
 } // namespace
 
 SessionTable::SessionTable(const session::Limits& limits)
-    : limits_(limits), total_bytes_(std::make_shared<session::Budget>(limits.max_bytes_in_flight_in_total)) {
+    : limits_(limits), total_bytes_(std::make_shared<session::Budget>(limits.max_bytes_in_flight_in_total)),
+      total_cameras_(std::make_shared<session::Budget>(limits.max_own_cameras)) {
     state_.lock()->all_opens.emplace(RateLimit::Rate{.per_second = kPeersAtOnce * limits.max_opens_per_second_per_peer,
                                                      .burst = static_cast<double>(limits.max_sessions)});
 }
@@ -50,6 +51,12 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     if (static_cast<std::uint64_t>(of_peer) >= limits_.max_sessions_per_peer) {
         return exhausted("sessions_per_peer", "all " + std::to_string(limits_.max_sessions_per_peer) +
                                                   " sessions that one peer may have are in use");
+    }
+    const auto kept = session::newcomers_reserve(limits_.max_sessions, limits_.max_sessions_per_peer);
+    if (of_peer > 0 && state.places.size() + kept >= limits_.max_sessions) {
+        return exhausted("sessions", "the last " + std::to_string(kept) + " of " +
+                                         std::to_string(limits_.max_sessions) +
+                                         " sessions of this server are kept for peers that have none");
     }
     if (const auto who = haste(state, peer)) { // last: only what would be admitted counts
         return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
@@ -80,7 +87,7 @@ session::PeerBudgets SessionTable::budgets_of(const State& state, const std::str
     }
     return {.bytes = std::make_shared<session::Budget>(limits_.max_bytes_in_flight_per_peer, total_bytes_),
             .pixels = std::make_shared<session::Budget>(limits_.max_pixels_per_peer),
-            .cameras = std::make_shared<session::Budget>(limits_.max_own_cameras_per_peer)};
+            .cameras = std::make_shared<session::Budget>(limits_.max_own_cameras_per_peer, total_cameras_)};
 }
 
 void SessionTable::add(std::uint64_t id, const std::shared_ptr<Stream>& stream) {

@@ -72,7 +72,8 @@ private:
     session::PeerBudgets budgets_of(const State& state, const std::string& peer) const;
 
     const session::Limits limits_;
-    const std::shared_ptr<session::Budget> total_bytes_; ///< in flight
+    const std::shared_ptr<session::Budget> total_bytes_;   ///< in flight
+    const std::shared_ptr<session::Budget> total_cameras_; ///< of clients that have one each
     std::condition_variable removed_;
     Guarded<State> state_;
 };

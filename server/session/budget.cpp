@@ -4,24 +4,33 @@
 namespace fieldcast::session {
 
 bool Budget::take(std::uint64_t amount) {
-    if (!take_here(amount)) {
+    return take_within(amount, limit_);
+}
+
+bool Budget::take_within(std::uint64_t amount, std::uint64_t limit) {
+    const std::optional<std::uint64_t> before = take_here(amount, limit);
+    if (!before) {
         return false;
     }
-    if (parent_ != nullptr && !parent_->take(amount)) {
+    if (parent_ == nullptr) {
+        return true;
+    }
+    const std::uint64_t kept = *before == 0 ? 0 : newcomers_reserve(parent_->limit_, limit_);
+    if (!parent_->take_within(amount, parent_->limit_ - kept)) {
         *used_.lock() -= amount;
         return false;
     }
     return true;
 }
 
-bool Budget::take_here(std::uint64_t amount) {
+std::optional<std::uint64_t> Budget::take_here(std::uint64_t amount, std::uint64_t limit) {
     auto used = used_.lock();
-    const bool fits = *used <= limit_ && amount <= limit_ - *used;
+    const bool fits = *used <= limit && amount <= limit - *used;
     if (!fits && *used != 0) {
-        return false;
+        return std::nullopt;
     }
     *used += amount;
-    return true;
+    return *used - amount;
 }
 
 void Budget::give_back(std::uint64_t amount) {

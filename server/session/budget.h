@@ -3,12 +3,20 @@
 
 #include "core/base/guarded.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace fieldcast::session {
 
-/// An amount that several holders share, as part of a larger one if it has a parent. Thread-safe.
+/// How much of a total is kept for peers that have nothing of it yet: an eighth, or nothing where one peer may have all.
+constexpr std::uint64_t newcomers_reserve(std::uint64_t total, std::uint64_t of_one_peer) {
+    return of_one_peer >= total ? 0 : std::max<std::uint64_t>(total / 8, 1);
+}
+
+/// An amount that several holders share, as part of a larger one if it has a parent. The newcomers' reserve of the
+/// parent goes to budgets that hold nothing yet. Thread-safe.
 ///
 ///     const auto total = std::make_shared<Budget>(1U << 30U);
 ///     const auto of_peer = std::make_shared<Budget>(1U << 20U, total);
@@ -28,7 +36,9 @@ public:
     std::uint64_t limit() const { return limit_; }
 
 private:
-    bool take_here(std::uint64_t amount);
+    /// What was used before; empty: it does not fit into `limit`.
+    std::optional<std::uint64_t> take_here(std::uint64_t amount, std::uint64_t limit);
+    bool take_within(std::uint64_t amount, std::uint64_t limit);
 
     const std::uint64_t limit_;
     const std::shared_ptr<Budget> parent_;

@@ -7,15 +7,17 @@
 
 namespace fieldcast::session {
 
-/// What one client may ask for and how long it may take; the rest depends on the channel.
+/// What one client may ask for and how long it may take; the rest depends on the channel. One peer may have a quarter
+/// of what there is, and the last eighth is kept for peers that have nothing (newcomers_reserve).
 struct Limits {
     std::uint32_t max_connections = 256; ///< fewer if there are few descriptors
     std::uint32_t max_sessions = 64;
-    std::uint32_t max_sessions_per_peer = 64;
+    std::uint32_t max_sessions_per_peer = 16;
     double max_opens_per_second_per_peer = 10.0; ///< sessions, on average; max_sessions_per_peer of them at once
     std::uint64_t max_view_set_pixels = 72ULL * 1280 * 720;     ///< rows · columns · width · height of one session
-    std::uint64_t max_pixels_per_peer = 4 * 72ULL * 1280 * 720; ///< the same, over the sessions of one peer
-    std::uint32_t max_own_cameras_per_peer = 4;                 ///< over the sessions of one peer
+    std::uint64_t max_pixels_per_peer = 36ULL * 1280 * 720;     ///< the same, over the sessions of one peer
+    std::uint32_t max_own_cameras = 4;                          ///< of clients that have one each, over all channels
+    std::uint32_t max_own_cameras_per_peer = 1;                 ///< over the sessions of one peer
     std::uint64_t max_bytes_in_flight = 256ULL << 20;           ///< of one session
     std::uint64_t max_bytes_in_flight_per_peer = 1024ULL << 20; ///< over the sessions of one peer
     std::uint64_t max_bytes_in_flight_in_total = 4096ULL << 20; ///< over all sessions

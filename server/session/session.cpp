@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/session.h"
 
-#include "server/feed/frame_interval.h"
 
 #include <algorithm>
 #include <array>
@@ -100,36 +99,61 @@ void Session::handle(const v1::FrameAck& ack, TimePoint now) {
 }
 
 void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
-    if (!configuration_ || !feed::covers(*frame, configuration_->wish)) {
+    if (!configuration_) {
+        return;
+    }
+    const TimePoint begun = frame->begun.value_or(now);
+    const bool had_room = !is_full_ && begun >= has_room_since_;
+    const bool is_covered = feed::covers(*frame, configuration_->wish);
+    if (!is_covered && !had_room) {
+        return miss_frame(*frame, is_full_ ? waiting_reason() : full_because_);
+    }
+    if (!pace_.is_due(begun)) {
+        return miss_frame(*frame, DropReason::kRateCap);
+    }
+    if (!is_covered) {
         if (epoch_ > 1) { // otherwise it was begun before the client came, and is none of its frames
             counts_.drops.add(DropReason::kReconfigured);
         }
         return;
     }
-    if (is_too_soon(now)) {
-        counts_.drops.add(DropReason::kRateCap);
-        return;
+    pace_.take(begun);
+    if (const auto older = mailbox_.put(frame)) {
+        miss_frame(**older, waiting_reason());
     }
-    if (mailbox_.put(frame)) {
-        adapter_.missed();
-        counts_.drops.add(sending_        ? DropReason::kSending
-                          : lacks_budget_ ? DropReason::kNoBudget
-                                          : DropReason::kNoCredit);
+    if (sending_ || !credits_.allow(0)) {
+        tell_room(now);
     }
 }
 
-bool Session::is_too_soon(TimePoint now) {
-    const float fps = configuration_->frames_per_second;
-    if (fps >= configuration_->feed->info().frames_per_second) {
-        return false;
+DropReason Session::waiting_reason() const {
+    return sending_ ? DropReason::kSending : lacks_budget_ ? DropReason::kNoBudget : DropReason::kNoCredit;
+}
+
+void Session::miss_frame(const feed::EncodedFrame& frame, DropReason reason) {
+    counts_.drops.add(reason);
+    if (reason != DropReason::kRateCap) {
+        adapter_.missed();
     }
-    const TimePoint::duration interval = feed::frame_interval(fps);
-    if (now + interval / 4 < next_frame_due_) { // a quarter: frames of the channel are not evenly spaced
-        return true;
+    if (frame.key_frame_id != 0 && frame.key_frame_id == frame.header.frame_id) {
+        set_key_frame(0); // what follows refers to it
     }
-    const bool is_late = now >= next_frame_due_ + interval;
-    next_frame_due_ = (is_late ? now : next_frame_due_) + interval;
-    return false;
+}
+
+void Session::tell_room(TimePoint now) {
+    const bool is_full = mailbox_.peek() != nullptr;
+    if (is_full == is_full_) {
+        return;
+    }
+    is_full_ = is_full;
+    if (is_full) {
+        full_because_ = waiting_reason();
+    } else {
+        has_room_since_ = now;
+    }
+    if (subscription_.feed() != nullptr) {
+        subscription_.set_room({.taken_until = is_full ? std::optional(rhythm_.next(now)) : std::nullopt});
+    }
 }
 
 void Session::go_away(const std::string& reason, TimePoint at, CloseReason why) {
@@ -222,6 +246,11 @@ v1::ServerMessage Session::heartbeat() const {
 }
 
 void Session::start_frame(TimePoint now) {
+    begin_frame(now);
+    tell_room(now);
+}
+
+void Session::begin_frame(TimePoint now) {
     lacks_budget_ = false;
     if (mailbox_.peek() == nullptr || !credits_.allow(0)) {
         return;
@@ -242,6 +271,7 @@ void Session::start_frame(TimePoint now) {
         return; // likewise
     }
     const feed::FramePtr encoded = *mailbox_.take();
+    rhythm_.begun(now);
     credits_.spend({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
     adapter_.begun({.epoch = epoch_, .frame_id = frame.frame_id}, frame.payload_bytes, now);
     timings_.begun({.epoch = epoch_, .frame_id = frame.frame_id}, configuration_->feed->info().name, *encoded,

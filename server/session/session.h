@@ -11,6 +11,7 @@
 #include "server/session/mailbox.h"
 #include "server/session/negotiate.h"
 #include "server/session/session_counts.h"
+#include "server/session/start_rhythm.h"
 #include "server/session/steering_desk.h"
 
 #include <deque>
@@ -97,7 +98,10 @@ private:
     std::optional<Refusal> change_own_feed(Configuration& wanted);
     void close_feeds(); ///< no frames from now on
     void drop_old_configuration();
-    bool is_too_soon(TimePoint now); ///< by the client's rate cap; if not, the frame counts
+    DropReason waiting_reason() const; ///< why the frame in the mailbox is not being sent
+    void miss_frame(const feed::EncodedFrame& frame, DropReason reason);
+    void tell_room(TimePoint now); ///< to the feed: whether a frame waits
+    void begin_frame(TimePoint now); ///< if there is one and it may be sent
 
     std::optional<wire::WireChunk> next_control(TimePoint now);
     v1::ServerMessage depart(TimePoint now);
@@ -133,7 +137,11 @@ private:
     std::optional<CloseReason> close_reason_;
     TimePoint next_heartbeat_;
     TimePoint configure_by_;
-    TimePoint next_frame_due_{}; ///< by the client's rate cap
+    feed::Pace pace_;      ///< the client's rate cap
+    StartRhythm rhythm_;   ///< of frames that are sent
+    bool is_full_ = false; ///< the feed knows that a frame waits
+    DropReason full_because_ = DropReason::kNoCredit; ///< when a frame waited last
+    TimePoint has_room_since_{};                      ///< when it stopped waiting
     SessionCounts counts_;
     log::Quota lines_;
     SteeringDesk steering_;

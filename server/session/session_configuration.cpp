@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a session comes by its configuration, and changes it.
+#include "server/feed/frame_interval.h"
 #include "server/session/field_limits.h"
 #include "server/session/session.h"
 
@@ -18,6 +19,12 @@ std::uint64_t made_pixels(const Configuration& configuration) {
 
 feed::CameraLoad load_of(const Configuration& configuration) {
     return {.frames_per_second = configuration.frames_per_second, .view_pixels = made_pixels(configuration)};
+}
+
+/// A cap of the client; without one the channel sets the pace.
+feed::Pace pace_of(const Configuration& configuration) {
+    const bool is_capped = configuration.frames_per_second < configuration.feed->info().frames_per_second;
+    return is_capped ? feed::Pace(feed::frame_interval(configuration.frames_per_second)) : feed::Pace();
 }
 
 Refusal exhausted(std::string field, std::string message) {
@@ -55,7 +62,10 @@ v1::Configured& Session::begin_epoch(Configuration chosen) {
     drop_old_configuration();
     configuration_ = std::move(chosen);
     credits_.configure(static_cast<double>(configuration_->frames_per_second), configuration_->max_bytes_in_flight);
-    next_frame_due_ = {};
+    pace_ = pace_of(*configuration_);
+    is_full_ = false; // the mailbox is empty
+    has_room_since_ = {};
+    subscription_.set_room({});
     set_key_frame(0);
     ++epoch_;
     v1::Configured& configured = *answers_.emplace_back().mutable_configured();
@@ -99,10 +109,10 @@ std::optional<Refusal> Session::subscribe(Configuration& wanted) {
         wanted.feed = opened.feed();
     }
     if (subscription_.feed() == wanted.feed) {
-        auto problem = subscription_.change(wanted.wish);
+        auto problem = subscription_.change(wanted.wish, pace_of(wanted));
         return problem ? std::optional(exhausted(budget_field(wanted), std::move(*problem))) : std::nullopt;
     }
-    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_);
+    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_, pace_of(wanted));
     if (!subscription) {
         count_camera();
         return exhausted(budget_field(wanted), std::move(subscription.error()));
@@ -119,10 +129,10 @@ void Session::count_camera() {
 
 tl::expected<feed::OwnFeed, Refusal> Session::open_own_feed(const Configuration& wanted) {
     if (!cameras_.resize(1)) {
-        return tl::unexpected(exhausted("channel", "channel '" + wanted.feed->info().name +
-                                                       "' gives every client a camera, and all " +
-                                                       std::to_string(limits_.max_own_cameras_per_peer) +
-                                                       " that one peer may have are in use by its other sessions"));
+        return tl::unexpected(
+            exhausted("channel", "channel '" + wanted.feed->info().name + "' gives every client a camera; one peer may have " +
+                                 std::to_string(limits_.max_own_cameras_per_peer) + ", and the last of all " +
+                                 std::to_string(limits_.max_own_cameras) + " go to peers that have none"));
     }
     auto own = wanted.feed->opener()->open(load_of(wanted), own_feed_.feed() != nullptr ? &own_feed_ : nullptr);
     if (!own) {
@@ -134,11 +144,11 @@ tl::expected<feed::OwnFeed, Refusal> Session::open_own_feed(const Configuration&
 
 std::optional<Refusal> Session::change_own_feed(Configuration& wanted) {
     wanted.feed = own_feed_.feed();
-    if (auto problem = subscription_.change(wanted.wish)) {
+    if (auto problem = subscription_.change(wanted.wish, pace_of(wanted))) {
         return exhausted(budget_field(wanted), std::move(*problem));
     }
     if (auto problem = own_feed_.change(load_of(wanted))) {
-        subscription_.change(configuration_->wish); // fits: nobody else is there
+        subscription_.change(configuration_->wish, pace_); // fits: nobody else is there
         return exhausted("channel", std::move(*problem));
     }
     return std::nullopt;

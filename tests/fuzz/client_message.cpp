@@ -66,7 +66,7 @@ private:
     void publish() {
         if (frame_id_ < kMaxFrames) {
             ++frame_id_;
-            feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, 1));
+            feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_, 1), now_);
         }
     }
 

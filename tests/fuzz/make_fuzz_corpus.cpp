@@ -70,7 +70,7 @@ public:
         for (const std::uint64_t frame_id : {1, 2}) {
             record_.steps += '\5'; // a frame, 20 ms later
             now_ += 20ms;
-            feed_->publish(test::synthetic_frame(info_, feed_->demand(), frame_id, pool_, 1));
+            feed_->publish(test::synthetic_frame(info_, feed_->demand(now_), frame_id, pool_, 1), now_);
             drain();
             message.mutable_frame_ack()->set_frame_id(frame_id);
             message.mutable_frame_ack()->set_epoch(1);

@@ -118,7 +118,7 @@ double difference(const std::string& a, const std::string& b) {
 }
 
 TEST(OwnCameras, TwoClientsSeeDifferentThingsAndAThirdIsRefused) {
-    RunningServer server(FIELDCAST_SERVER, {"--camera-control", "own", "--max-own-cameras", "2", "--own-camera-budget",
+    RunningServer server(FIELDCAST_SERVER, {"--camera-control", "own", "--max-own-cameras", "2", "--max-own-cameras-per-peer", "2", "--own-camera-budget",
                                             "1000000", "--guard-band", "none", "--time", "0"});
     if (server.lacks_device()) {
         GTEST_SKIP() << server.log();

@@ -19,6 +19,7 @@ public:
 
     int port() const { return server_.port(); }
     service::GrpcServer& server() { return server_; }
+    const std::shared_ptr<feed::Feed>& feed() const { return channel_.feed(); }
     std::string page() { return registry_->page().text(); }
 
     /// The value of a series, labels included; -1 if it is not there.

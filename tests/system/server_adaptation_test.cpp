@@ -267,7 +267,7 @@ protected:
     std::optional<v1::Configured> frame(milliseconds on_the_way) {
         std::optional<v1::Configured> changed;
         ++frame_id_;
-        feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, frame_id_));
+        feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_, frame_id_), now_);
         for (v1::ServerMessage message = next(); message.message_case() != v1::ServerMessage::MESSAGE_NOT_SET;
              message = next()) {
             changed = message.has_configured() ? std::optional(message.configured()) : changed;

@@ -43,6 +43,28 @@ TEST(BudgetTest, TheParentLimitsAllChildren) {
     EXPECT_EQ(parent->used(), 3U);
 }
 
+TEST(BudgetTest, TheLastEighthIsForWhoHasNothing) {
+    const auto parent = std::make_shared<Budget>(16);
+    Budget one(15, parent);
+    Budget two(15, parent);
+    Budget three(15, parent);
+    EXPECT_TRUE(one.take(12));
+    EXPECT_TRUE(two.take(1));
+    EXPECT_FALSE(one.take(2)) << "14 of 16 for those that have something";
+    EXPECT_TRUE(one.take(1));
+    EXPECT_FALSE(two.take(1));
+    EXPECT_TRUE(three.take(2)) << "it has nothing yet";
+    EXPECT_FALSE(three.take(1));
+    EXPECT_EQ(parent->used(), 16U);
+}
+
+TEST(BudgetTest, NothingIsKeptWhereOneMayHaveAll) {
+    const auto parent = std::make_shared<Budget>(16);
+    Budget one(16, parent);
+    EXPECT_TRUE(one.take(12));
+    EXPECT_TRUE(one.take(4));
+}
+
 TEST(BudgetTest, SharesEndWithTheirHolder) {
     const auto budget = std::make_shared<Budget>(10);
     {
@@ -125,7 +147,7 @@ protected:
     /// Hands a new frame to the session and writes all it can; the number of complete frames.
     int send_frame(Session& session) {
         ++frame_id_;
-        session.on_frame(test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, frame_id_), now_);
+        session.on_frame(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_, frame_id_), now_);
         return drain(session);
     }
 

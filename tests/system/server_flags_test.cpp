@@ -160,7 +160,7 @@ TEST(Flags, GiveEveryClientACamera) {
         read({"--scene", kFile, "--camera-control", "own", "--max-own-cameras", "7", "--own-camera-budget", "250"});
     EXPECT_THAT(all.problems, IsEmpty());
     EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kOwn);
-    EXPECT_EQ(all.config.max_own_cameras, 7U);
+    EXPECT_EQ(all.config.limits.max_own_cameras, 7U);
     EXPECT_EQ(all.config.own_camera_budget_ms, 250.0);
     EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems,
                 Contains(HasSubstr("--max-own-cameras 0: 1 to")));

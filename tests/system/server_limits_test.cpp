@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits per peer and in total, over gRPC.
 #include "served_channel.h"
+#include "server/service/download_table.h"
+#include "server/service/session_table.h"
 
 #include <future>
 #include <grpcpp/generic/generic_stub.h>
@@ -76,11 +78,58 @@ TEST(ServiceLimits, AllPeersTogetherMayNotOpenSessionsTooFast) {
     EXPECT_TRUE(served.shows("fieldcast_sessions_refused_total{reason=\"opens\"}", 1));
 }
 
+TEST(ServiceLimits, OneAddressHasAQuarterByDefaultAndNewcomersHaveAReserve) {
+    service::SessionTable table(session::Limits{.max_opens_per_second_per_peer = 100.0});
+    const auto fill = [&](const std::string& peer) {
+        int count = 0;
+        while (table.admit(peer, {}).has_value()) {
+            ++count;
+        }
+        return count;
+    };
+    for (const char* peer : {"a", "b", "c"}) {
+        EXPECT_EQ(fill(peer), 16) << peer;
+    }
+    EXPECT_EQ(fill("d"), 8) << "the last eight of 64 are for addresses that have none";
+    EXPECT_THAT(table.admit("d", {}).error().message, HasSubstr("the last 8 of 64 sessions"));
+    for (const char* peer : {"e", "f", "g", "h", "i", "j", "k", "l"}) {
+        EXPECT_EQ(fill(peer), 1) << peer;
+    }
+    EXPECT_THAT(table.admit("m", {}).error().message, HasSubstr("all 64 sessions"));
+}
+
+TEST(ServiceLimits, OneAddressMayHaveAllWhereTheLimitsSaySo) {
+    service::SessionTable table(session::Limits{.max_sessions = 5, .max_sessions_per_peer = 5});
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_TRUE(table.admit("proxy", {}).has_value()) << i;
+    }
+    EXPECT_THAT(table.admit("proxy", {}).error().message, HasSubstr("all 5 sessions"));
+}
+
+TEST(ServiceLimits, TheLastDownloadsAreForNewcomers) {
+    metrics::Registry registry;
+    service::DownloadTable table(session::Limits{.max_scene_downloads = 4, .max_scene_downloads_per_peer = 3}, registry);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(table.admit("a").has_value()) << i;
+    }
+    EXPECT_FALSE(table.admit("a").has_value());
+    EXPECT_TRUE(table.admit("b").has_value());
+    service::DownloadTable other(session::Limits{.max_scene_downloads = 3, .max_scene_downloads_per_peer = 2}, registry);
+    EXPECT_TRUE(other.admit("a").has_value());
+    EXPECT_TRUE(other.admit("a").has_value());
+    EXPECT_FALSE(other.admit("a").has_value());
+    EXPECT_TRUE(other.admit("b").has_value());
+    EXPECT_THAT(other.admit("b").error(), HasSubstr("all 3 scene downloads"));
+}
+
 TEST(ServiceLimits, AllSessionsTogetherHaveABudgetOfBytes) {
     ServedChannel served({.max_bytes_in_flight_in_total = 1});
     OpenCall silent(connect(served.port()));
     silent.configure();
     ASSERT_TRUE(silent.read_frame().has_value()) << "one may go alone; it is not acknowledged";
+    const feed::Wish planes = feed::PlanesWish{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
+    const auto recorder = feed::Feed::subscribe(served.feed(), planes, [](const feed::FramePtr&) {});
+    ASSERT_TRUE(recorder.has_value()) << "the channel goes on, whoever else has room";
     OpenCall other(connect(served.port()));
     other.configure();
     ASSERT_TRUE(other.read_until(Kind::kConfigured).has_value());

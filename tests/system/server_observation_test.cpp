@@ -91,6 +91,9 @@ TEST_F(Observation, CountsFramesBytesAndSessions) {
     wanted.mutable_grid()->set_rows(2);
     wanted.mutable_grid()->set_cols(3);
     call.configure(wanted);
+    const feed::Wish planes = feed::PlanesWish{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
+    const auto recorder = feed::Feed::subscribe(channel.feed(), planes, [](const feed::FramePtr&) {});
+    ASSERT_TRUE(recorder.has_value()) << "the channel goes on, whoever else has room";
     std::uint64_t payload_bytes = 0;
     for (int frames = 0; frames < 2;) { // two are what a client may have without acknowledging
         const auto message = call.read_until(Kind::kFrameChunk);

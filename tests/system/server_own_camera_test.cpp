@@ -62,6 +62,27 @@ TEST_F(AdmissionTest, WhoIsAloneGetsWhatItWants) {
     EXPECT_FALSE(admission_.admit(2, "hall", {.frames_per_second = 0.1F}).has_value());
 }
 
+TEST_F(AdmissionTest, WhoIsAloneBesideAnIdleCameraGetsWhatItWants) {
+    const feed::CameraLoad all{.frames_per_second = 240.0F, .view_pixels = 9'000'000};
+    auto now = Admission::TimePoint(1h);
+    admission_.look_at_clock(now);
+    EXPECT_FALSE(admission_.admit(1, "hall", all).has_value());
+    admission_.look_at_clock(now += 1h);
+    EXPECT_TRUE(admission_.admit(2, "hall", all).has_value()) << "the first one is still being made";
+    observe(1, 30ms);
+    admission_.look_at_clock(now += Admission::kIdleAfter);
+    EXPECT_TRUE(admission_.admit(2, "hall", all).has_value());
+    admission_.look_at_clock(now += 1s);
+    EXPECT_EQ(admission_.promised_ms_per_second("hall"), 0.0) << "it renders nothing";
+    EXPECT_FALSE(admission_.admit(2, "hall", all).has_value());
+    observe(2, 30ms);
+    const double of_one = admission_.promised_ms_per_second("hall");
+    EXPECT_GT(of_one, 0.0);
+    observe(1, 30ms);
+    EXPECT_GT(admission_.promised_ms_per_second("hall"), 1.5 * of_one) << "it renders again, and counts";
+    EXPECT_TRUE(admission_.change(2, {.frames_per_second = 241.0F, .view_pixels = 9'000'000}).has_value());
+}
+
 TEST_F(AdmissionTest, MoreNeedsRoomAndLessDoesNot) {
     EXPECT_FALSE(admission_.admit(1, "hall", kTenFrames).has_value());
     EXPECT_FALSE(admission_.admit(2, "hall", kTenFrames).has_value());

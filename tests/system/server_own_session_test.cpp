@@ -197,7 +197,7 @@ TEST_F(OwnSession, APeerHasNoMoreThanItsShare) {
     EXPECT_EQ(configure(*ann, "other").message_case(), Kind::kConfigured) << "one at a time";
     const v1::ServerMessage refused = configure(*bob, "own");
     EXPECT_EQ(refused.refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
-    EXPECT_THAT(refused.refused().message(), HasSubstr("all 4 that one peer may have"));
+    EXPECT_THAT(refused.refused().message(), HasSubstr("one peer may have 1, and the last of all 4 go to peers that have none"));
     EXPECT_EQ(configure(*bob, "fixed").message_case(), Kind::kConfigured);
     EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
     EXPECT_EQ(configure(*bob, "own").message_case(), Kind::kConfigured) << "ann gave hers back";

@@ -20,8 +20,9 @@ protected:
     /// `key_frame_id`: that strips refer to; the frame's own if nothing is said.
     void publish(std::optional<std::uint64_t> key_frame_id = std::nullopt) {
         ++frame_id_;
-        feed_->publish(
-            test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, key_frame_id.value_or(frame_id_)));
+        feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_,
+                                             key_frame_id.value_or(frame_id_)),
+                       now_);
     }
 
     void configure_with_key_frames() {
@@ -154,7 +155,7 @@ TEST_F(SessionTest, ReconfiguringAbortsTheFrameBeingSent) {
 
 TEST_F(SessionTest, SkipsFramesMadeForAnEarlierWish) {
     configure();
-    const feed::FramePtr old = test::synthetic_frame(feed_->info(), feed_->demand(), 1, pool_);
+    const feed::FramePtr old = test::synthetic_frame(feed_->info(), feed_->demand(now_), 1, pool_);
     v1::Configure wanted;
     wanted.add_modes(v1::DELIVERY_MODE_SCENE);
     configure(wanted);
@@ -165,7 +166,7 @@ TEST_F(SessionTest, SkipsFramesMadeForAnEarlierWish) {
 
 TEST_F(SessionTest, FramesBegunBeforeTheClientCameAreNotDropped) {
     feed_->observe([](const feed::FramePtr&) {}); // the channel runs without it
-    const feed::FramePtr begun = test::synthetic_frame(feed_->info(), feed_->demand(), 1, pool_);
+    const feed::FramePtr begun = test::synthetic_frame(feed_->info(), feed_->demand(now_), 1, pool_);
     configure();
     feed_->publish(begun);
     EXPECT_EQ(drain(), 0) << "it has no views";
@@ -266,7 +267,7 @@ TEST_F(SessionTest, NestedGridsShareViews) {
         [](const feed::FramePtr&) {});
     ASSERT_TRUE(other.has_value());
     configure(); // 6×6
-    const feed::Demand demand = feed_->demand();
+    const feed::Demand demand = feed_->demand(now_);
     ASSERT_EQ(demand.views.size(), 1U);
     EXPECT_EQ(demand.views[0].positions.size(), 36U);
 }
@@ -290,11 +291,11 @@ TEST_F(SessionTest, AnotherLatticeIsAdmittedWithinTheBudgetOnly) {
 
 TEST_F(SessionTest, FramesReferToTheKeyFrameOnceItWasSent) {
     configure_with_key_frames();
-    EXPECT_TRUE(feed_->demand().needs_key);
+    EXPECT_TRUE(feed_->demand(now_).needs_key);
     publish();
     EXPECT_EQ(next_key_frame_id(), 1U);
-    EXPECT_FALSE(feed_->demand().needs_key);
-    EXPECT_FALSE(feed_->demand().needs_alone);
+    EXPECT_FALSE(feed_->demand(now_).needs_key);
+    EXPECT_FALSE(feed_->demand(now_).needs_alone);
     publish(1);
     EXPECT_EQ(next_key_frame_id(), 1U);
     acknowledge(1);
@@ -308,7 +309,7 @@ TEST_F(SessionTest, WhoJoinsBetweenKeyFramesGetsFramesThatStandAlone) {
     configure_with_key_frames();
     publish(7);
     EXPECT_EQ(next_key_frame_id(), 0U);
-    EXPECT_TRUE(feed_->demand().needs_key) << "until it has one";
+    EXPECT_TRUE(feed_->demand(now_).needs_key) << "until it has one";
     publish();
     EXPECT_EQ(next_key_frame_id(), 12U);
 }
@@ -322,7 +323,7 @@ TEST_F(SessionTest, AFrameThatRefersToAMissedKeyFrameIsDropped) {
     publish(2);
     EXPECT_EQ(next().message_case(), v1::ServerMessage::MESSAGE_NOT_SET);
     EXPECT_EQ(dropped(DropReason::kNoKeyFrame), 1U) << "nobody had asked for strips that stand alone";
-    EXPECT_TRUE(feed_->demand().needs_alone);
+    EXPECT_TRUE(feed_->demand(now_).needs_alone);
     publish(2);
     EXPECT_EQ(next_key_frame_id(), 0U) << "now they are there";
 }
@@ -336,7 +337,7 @@ TEST_F(SessionTest, AClientThatFailedToDecodeIsAskedForNothingItLacks) {
     message.mutable_frame_ack()->set_epoch(1);
     message.mutable_frame_ack()->set_outcome(v1::FRAME_OUTCOME_FAILED);
     session_.on_message(message, now_);
-    EXPECT_TRUE(feed_->demand().needs_key);
+    EXPECT_TRUE(feed_->demand(now_).needs_key);
     publish(1);
     EXPECT_EQ(next_key_frame_id(), 0U);
 }
@@ -344,8 +345,8 @@ TEST_F(SessionTest, AClientThatFailedToDecodeIsAskedForNothingItLacks) {
 TEST_F(SessionTest, AClientThatKeepsNoKeyFramesForcesNone) {
     configure();
     drain();
-    EXPECT_TRUE(feed_->demand().needs_alone);
-    EXPECT_FALSE(feed_->demand().needs_key);
+    EXPECT_TRUE(feed_->demand(now_).needs_alone);
+    EXPECT_FALSE(feed_->demand(now_).needs_key);
     publish();
     EXPECT_EQ(next_key_frame_id(), 0U);
     publish(1);
@@ -357,7 +358,7 @@ TEST_F(SessionTest, AnotherConfigurationForgetsTheKeyFrame) {
     publish();
     EXPECT_EQ(next_key_frame_id(), 1U);
     configure_with_key_frames();
-    EXPECT_TRUE(feed_->demand().needs_key);
+    EXPECT_TRUE(feed_->demand(now_).needs_key);
     publish(1);
     EXPECT_EQ(next_key_frame_id(), 0U);
 }

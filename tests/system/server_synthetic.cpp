@@ -96,6 +96,7 @@ feed::FramePtr synthetic_frame(const feed::ChannelInfo& info, const feed::Demand
     auto frame = std::make_shared<feed::EncodedFrame>();
     frame->header = synthetic_header(info, frame_id);
     frame->key_frame_id = key_frame_id;
+    frame->begun = demand.begun;
     wire::KeyFrame key{.frame_id = key_frame_id, .is_optional = demand.needs_alone};
     const bool refers = key_frame_id != 0 && key_frame_id != frame_id;
     if (!demand.planes.empty()) {

@@ -11,12 +11,14 @@ fieldcast_test(server_session_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_adaptation_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_budget_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_credits_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_demand_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_feed_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_field_limits_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_negotiate_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_session_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_steering_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_timings_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_view_memory_test.cpp
     DEPENDS server_synthetic fieldcast_server_session)
 fieldcast_test(server_own_camera_test LABELS quick tsan
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_own_camera_test.cpp
@@ -154,3 +156,8 @@ fieldcast_test(own_process_test LABELS gpu TIMEOUT 600
     DEPENDS running_server)
 add_dependencies(own_process_test fieldcast-server)
 target_compile_definitions(own_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
+fieldcast_test(demand_process_test LABELS gpu TIMEOUT 600
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/demand_process_test.cpp
+    DEPENDS running_server)
+add_dependencies(demand_process_test fieldcast-server)
+target_compile_definitions(demand_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")

@@ -38,7 +38,7 @@ protected:
 
     void publish() {
         ++frame_id_;
-        feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(), frame_id_, pool_, frame_id_));
+        feed_->publish(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_, frame_id_), now_);
     }
 
     void acknowledge(v1::FrameOutcome outcome, std::int64_t shown_ns = 0) {
@@ -125,7 +125,7 @@ TEST_F(TimingsTest, KeepsABoundedNumber) {
 
 TEST_F(TimingsTest, NothingIsKeptUnlessAskedFor) {
     FrameTimings timings;
-    const auto frame = test::synthetic_frame(feed_->info(), feed_->demand(), 1, pool_);
+    const auto frame = test::synthetic_frame(feed_->info(), feed_->demand(now_), 1, pool_);
     timings.begun({1, 1}, "synthetic", *frame, 10);
     timings.end();
     EXPECT_TRUE(timings.take_finished().empty());
