@@ -3,9 +3,9 @@
 // Illumination of every pixel from the fit of its block, blended with the filtered frames before.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
 // Transactions on Graphics 38(5), 2019.
-// Differs: a fit that is too far from the mean of the light around the pixel, on its surface, does not express that light
-// (edges of shadows, highlights, mirrors) and is brought back to where noise may explain the difference. Sums of features
-// go below zero and above everything, and what they add in one place they miss in another.
+// Differs: a fit that is too far from the mean of the light around the pixel, on its surface, does not express that
+// light (edges of shadows, highlights, mirrors) and is brought back to where noise may explain the difference. Sums of
+// features go below zero and above everything, and what they add in one place they miss in another.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "shared/bmfr.h"
@@ -135,7 +135,8 @@ Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
     if (trust == 0.0) {
         return around.mean;
     }
-    Light fit = evaluate(block, camera_offset(params.cameras.at[source_of_page(page, params.source_count)], c.at, geometry), c.normal);
+    CameraRecord camera = params.cameras.at[source_of_page(page, params.source_count)];
+    Light fit = evaluate(block, camera_offset(camera, c.at, geometry), c.normal);
     fit.diffuse = limited(fit.diffuse, around.mean.diffuse, around.variance.diffuse, around.count);
     fit.specular = limited(fit.specular, around.mean.specular, around.variance.specular, around.count);
     return Light(max(mix(around.mean.diffuse, fit.diffuse, trust), vec3(0.0)),

@@ -3,10 +3,11 @@
 // Least squares fit of a block's accumulated illumination to features of its surfaces; one group per block.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
 // Transactions on Graphics 38(5), 2019.
-// Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone through
-// once; the expectation of the noise that is added to the features there is a ridge here. Positions count from the middle
-// of the block. Pixels without a surface do not take part, and blocks at the border are fitted to the nearest 32×32 pixels
-// of the image instead of mirrored ones. Two signals. Sums have a fixed order, whatever the size of a subgroup.
+// Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone
+// through once; the expectation of the noise that is added to the features there is a ridge here. Positions count from
+// the middle of the block. Pixels without a surface do not take part, and blocks at the border are fitted to the
+// nearest 32×32 pixels of the image instead of mirrored ones. Two signals. Sums have a fixed order, whatever the size
+// of a subgroup.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/bmfr.h"
 

@@ -25,20 +25,9 @@ void gather_sources_at(CameraBuffer cameras, ivec2 step, float weight, Target ta
     }
 }
 
-void main() {
-    uint number = linear_index();
-    if (number >= params.hole_count) {
-        return;
-    }
-    HoleFrame frame = params.frames.at[0];
-    ViewPixel pixel = locate_pixel(frame.pixels.at[number], params.width, params.height);
-    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
-    Target target = stored_target(frame.surfaces.at[number], camera, vec2(pixel.x, pixel.y) + 0.5);
-    target.tangential_limit_m *= float(kRadius); // taps lie that far away by intent; the plane decides
-    HoleLight own = unpack_hole_light(frame.light.at[number]);
-    float own_weight = max(own.frames, 1.0);
-    HoleSum sum = HoleSum(own.diffuse * own_weight, own.specular * own_weight, 0.0, own_weight);
-    Gathered around = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
+// Adds the pixels around: holes to `sum`, and to `around` what the sources show of the others.
+void gather_neighbours(HoleFrame frame, ViewPixel pixel, CameraRecord camera, Target target, inout HoleSum sum,
+                       inout Gathered around) {
     for (int y = -kRadius; y <= kRadius; ++y) {
         for (int x = -kRadius; x <= kRadius; ++x) {
             ivec2 step = ivec2(x, y);
@@ -54,6 +43,23 @@ void main() {
             }
         }
     }
+}
+
+void main() {
+    uint number = linear_index();
+    if (number >= params.hole_count) {
+        return;
+    }
+    HoleFrame frame = params.frames.at[0];
+    ViewPixel pixel = locate_pixel(frame.pixels.at[number], params.width, params.height);
+    CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
+    Target target = stored_target(frame.surfaces.at[number], camera, vec2(pixel.x, pixel.y) + 0.5);
+    target.tangential_limit_m *= float(kRadius); // taps lie that far away by intent; the plane decides
+    HoleLight own = unpack_hole_light(frame.light.at[number]);
+    float own_weight = max(own.frames, 1.0);
+    HoleSum sum = HoleSum(own.diffuse * own_weight, own.specular * own_weight, 0.0, own_weight);
+    Gathered around = Gathered(vec3(0.0), vec3(0.0), 0.0, kDiscardId);
+    gather_neighbours(frame, pixel, camera, target, sum, around);
     HoleLight light;
     float scale = 1.0 / (sum.weight + around.weight);
     light.diffuse = (sum.diffuse + around.diffuse) * scale;

@@ -1,7 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// One level of the edge-avoiding filter of svgf_atrous.comp over light that comes straight from punctual lights. Its only
-// noise is that of penumbrae and of the choice between lights; where its variance is 0, a shadow's edge stays as it is.
+// One level of the edge-avoiding filter of svgf_atrous.comp over light that comes straight from punctual lights. Its
+// only noise is that of penumbrae and of the choice between lights; where its variance is 0, a shadow's edge stays as
+// it is.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 
@@ -54,6 +55,25 @@ float estimate_variance(Centre c) {
     return is_young ? max(0.0, moments.y - moments.x * moments.x) / max(frames, 1.0) : variance / total;
 }
 
+// Adds what the taps around `c` that resemble it hold.
+void add_taps(Centre c, inout Signal signal) {
+    for (int y = -params.radius; y <= params.radius; ++y) {
+        for (int x = -params.radius; x <= params.radius; ++x) {
+            ivec2 offset = ivec2(x, y) * int(params.step);
+            ivec2 at = c.at + offset;
+            if (offset == ivec2(0) || !is_inside(at)) {
+                continue;
+            }
+            int texel = tap_texel(c, at);
+            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] *
+                           geometry_weight(c, offset, texelFetch(geometry_, texel));
+            if (weight > 1e-4) {
+                add_tap(signal, vec4(texelFetch(diffuse_, texel).rgb, variance_of(texel)), weight);
+            }
+        }
+    }
+}
+
 void main() {
     uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
@@ -68,20 +88,6 @@ void main() {
     Centre c = load_centre(pixel, geometry);
     light.a = variance_of(int(pixel));
     Signal s = make_signal(light, estimate_variance(c));
-    for (int y = -params.radius; y <= params.radius; ++y) {
-        for (int x = -params.radius; x <= params.radius; ++x) {
-            ivec2 offset = ivec2(x, y) * int(params.step);
-            ivec2 at = c.at + offset;
-            if (offset == ivec2(0) || !is_inside(at)) {
-                continue;
-            }
-            int texel = tap_texel(c, at);
-            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] *
-                           geometry_weight(c, offset, texelFetch(geometry_, texel));
-            if (weight > 1e-4) {
-                add_tap(s, vec4(texelFetch(diffuse_, texel).rgb, variance_of(texel)), weight);
-            }
-        }
-    }
+    add_taps(c, s);
     params.punctual.at[pixel] = resolve(s);
 }

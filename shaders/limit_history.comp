@@ -17,7 +17,7 @@ const float kLeastWeight = 0.02;   // as in svgf_variance.comp
 const float kDeviations = 2.0;     // that the long history may be away from the short one's surroundings
 
 // Sums over the neighbourhood.
-struct Around {
+struct Neighbourhood {
     vec3 diffuse;
     vec3 specular;
     vec4 moments;
@@ -25,7 +25,7 @@ struct Around {
     float total;
 };
 
-void add_tap(inout Around sum, int texel, float weight, bool with_colour) {
+void add_tap(inout Neighbourhood sum, int texel, float weight, bool with_colour) {
     vec4 moments = texelFetch(moments_, texel);
     sum.moments += weight * moments;
     sum.squares += weight * moments.xz * moments.xz;
@@ -37,8 +37,8 @@ void add_tap(inout Around sum, int texel, float weight, bool with_colour) {
 }
 
 // 7×7 pixels with gaps that close as the history grows, or 5×5 without.
-Around look_around(Centre c, bool is_young, float frames) {
-    Around sum = Around(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), 0.0);
+Neighbourhood sum_neighbourhood(Centre c, bool is_young, float frames) {
+    Neighbourhood sum = Neighbourhood(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), 0.0);
     int radius = is_young ? 3 : 2;
     int stride = is_young ? max(1, 4 - int(frames)) : 1;
     for (int y = -radius; y <= radius; ++y) {
@@ -65,6 +65,18 @@ float limiting_scale(float slow, float fast, float mean, float mean_of_squares) 
     return slow > 1e-6 ? clamp(slow, low, high) / slow : 1.0;
 }
 
+void store(uint pixel, vec4 diffuse, vec4 specular) {
+    params.diffuse.at[pixel] = diffuse;
+    params.specular.at[pixel] = specular;
+}
+
+// The variances (diffuse, specular) of the mean of `frames` frames: 1/n of one frame's, and α/(2 − α) of it once the
+// weights no longer fall.
+vec2 variance_of_mean(vec4 moments, vec2 squares_of_means, float frames) {
+    vec2 variance = max(vec2(0.0), moments.yw - squares_of_means);
+    return variance * max(1.0 / frames, params.alpha / (2.0 - params.alpha));
+}
+
 void main() {
     uint pixel = listed_index(params.groups);
     if (pixel >= params.width * params.height * params.page_count) {
@@ -74,26 +86,22 @@ void main() {
     vec4 diffuse = texelFetch(diffuse_, int(pixel));
     vec4 specular = texelFetch(specular_, int(pixel));
     if (geometry.z == 0xFFFFFFFFu) {
-        params.diffuse.at[pixel] = diffuse;
-        params.specular.at[pixel] = specular;
+        store(pixel, diffuse, specular);
         return;
     }
     float frames = max(texelFetch(length_, int(pixel)).x, 1.0);
     bool is_young = frames < kYoungFrames;
-    Around around = look_around(load_centre(pixel, geometry), is_young, frames);
-    float scale = 1.0 / around.total;
-    vec4 moments = around.moments * scale;
+    Neighbourhood sum = sum_neighbourhood(load_centre(pixel, geometry), is_young, frames);
+    float scale = 1.0 / sum.total;
+    vec4 moments = sum.moments * scale;
     if (is_young) {
-        diffuse.rgb = around.diffuse * scale;
-        specular.rgb = around.specular * scale;
+        diffuse.rgb = sum.diffuse * scale;
+        specular.rgb = sum.specular * scale;
     } else {
         vec4 own = texelFetch(moments_, int(pixel));
-        diffuse.rgb *= limiting_scale(luminance(diffuse.rgb), own.x, moments.x, around.squares.x * scale);
-        specular.rgb *= limiting_scale(luminance(specular.rgb), own.z, moments.z, around.squares.y * scale);
+        diffuse.rgb *= limiting_scale(luminance(diffuse.rgb), own.x, moments.x, sum.squares.x * scale);
+        specular.rgb *= limiting_scale(luminance(specular.rgb), own.z, moments.z, sum.squares.y * scale);
     }
-    // Of one frame, and of the mean of so many: 1/n, and α/(2 − α) once the weights no longer fall.
-    vec2 variance = max(vec2(0.0), moments.yw - (is_young ? moments.xz * moments.xz : around.squares * scale));
-    variance *= max(1.0 / frames, params.alpha / (2.0 - params.alpha));
-    params.diffuse.at[pixel] = vec4(diffuse.rgb, variance.x);
-    params.specular.at[pixel] = vec4(specular.rgb, variance.y);
+    vec2 variance = variance_of_mean(moments, is_young ? moments.xz * moments.xz : sum.squares * scale, frames);
+    store(pixel, vec4(diffuse.rgb, variance.x), vec4(specular.rgb, variance.y));
 }

@@ -22,7 +22,8 @@ void main() {
     CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     vec3 direction;
     float cone_width;
-    Surface s = visible_surface(camera, vec2(pixel.x, pixel.y) + 0.5, params.visibility.at[index], direction, cone_width);
+    vec2 position = vec2(pixel.x, pixel.y) + 0.5;
+    Surface s = visible_surface(camera, position, params.visibility.at[index], direction, cone_width);
     Bsdf b = make_bsdf(s, direction);
     HoleLight light = unpack_hole_light(params.light_in.at[number]);
     vec3 radiance = s.emission + light.diffuse * b.diffuse_modulation + light.specular * b.specular_modulation;

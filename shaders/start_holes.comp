@@ -66,6 +66,54 @@ void list_hole(uint number, uint view) {
     params.lists.at[(is_first ? 0u : params.hole_count) + slot] = number;
 }
 
+// The pixel's surface: its point's barycentrics and view depth, its triangle, and how it is stored.
+struct HoleSurface {
+    vec3 at; // barycentrics of the second and third vertex, view depth
+    uvec3 vertices;
+    uvec4 stored;
+};
+
+HoleSurface find_surface(Visibility seen, CameraRecord camera, vec2 position) {
+    vec3 direction = camera_direction(camera, position);
+    WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
+    vec3 at = intersect_plane(triangle, camera.origin, direction);
+    Surface s = make_surface(triangle, at.xy, normalize(direction), at.z / camera.focal_px);
+    uvec4 stored = uvec4(floatBitsToUint(at.z), pack_normal(s.normal), pack_normal(s.geometric_normal),
+                         (seen.instance << 12) | s.material);
+    return HoleSurface(at, triangle.vertices, stored);
+}
+
+// The hole's own light of the frame before; none without a hole of the same surface there.
+HoleLight remembered_light(uint view, Target target, Visibility seen, HoleSurface surface) {
+    if ((params.stages & kHolesPreviousFrame) != 0u) {
+        vec3 weights = vec3(1.0 - surface.at.x - surface.at.y, surface.at.xy);
+        HoleSum past = remember(view, target, seen, weights, surface.vertices);
+        if (past.weight >= params.settings.min_weight) {
+            return mean_light(past);
+        }
+    }
+    return HoleLight(vec3(0.0), vec3(0.0), 0.0);
+}
+
+// Whether a hole can do without rays in this frame. `light` becomes what it then shows.
+bool fill_without_rays(ViewPixel pixel, Target target, inout HoleLight light) {
+    bool is_its_turn = ((pixel.x + 2u * pixel.y + params.noise_frame) & 3u) == 0u;
+    if (light.frames >= kSettledFrames && !is_its_turn) {
+        atomicAdd(params.counters.at[kCounterRememberedHoles], 1u);
+        return true;
+    }
+    if ((params.stages & kHolesIsolated) == 0u || !is_isolated(pixel.view, uvec2(pixel.x, pixel.y))) {
+        return false;
+    }
+    Gathered around = gather_wide(target);
+    if (around.weight < 0.25) {
+        return false;
+    }
+    light = HoleLight(around.diffuse / around.weight, around.specular / around.weight, 1.0);
+    atomicAdd(params.counters.at[kCounterIsolatedHoles], 1u);
+    return true;
+}
+
 void main() {
     uint number = linear_index();
     if (number >= params.hole_count) {
@@ -75,34 +123,14 @@ void main() {
     uint index = frame.pixels.at[number];
     ViewPixel pixel = locate_pixel(index, params.width, params.height);
     CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
+    vec2 position = vec2(pixel.x, pixel.y) + 0.5;
     Visibility seen = params.visibility.at[index];
-    vec3 direction = camera_direction(camera, vec2(pixel.x, pixel.y) + 0.5);
-    WorldTriangle triangle = load_world_triangle(seen.instance, seen.primitive);
-    vec3 at = intersect_plane(triangle, camera.origin, direction);
-    Surface s = make_surface(triangle, at.xy, normalize(direction), at.z / camera.focal_px);
-    uvec4 surface = uvec4(floatBitsToUint(at.z), pack_normal(s.normal), pack_normal(s.geometric_normal),
-                          (seen.instance << 12) | s.material);
-    frame.surfaces.at[number] = surface;
+    HoleSurface surface = find_surface(seen, camera, position);
+    frame.surfaces.at[number] = surface.stored;
 
-    Target target = stored_target(surface, camera, vec2(pixel.x, pixel.y) + 0.5);
-    HoleLight light = HoleLight(vec3(0.0), vec3(0.0), 0.0);
-    if ((params.stages & kHolesPreviousFrame) != 0u) {
-        HoleSum past = remember(pixel.view, target, seen, vec3(1.0 - at.x - at.y, at.xy), triangle.vertices);
-        if (past.weight >= params.settings.min_weight) {
-            light = mean_light(past);
-        }
-    }
-    bool is_filled = light.frames >= kSettledFrames && ((pixel.x + 2u * pixel.y + params.noise_frame) & 3u) != 0u;
-    if (is_filled) {
-        atomicAdd(params.counters.at[kCounterRememberedHoles], 1u);
-    } else if ((params.stages & kHolesIsolated) != 0u && is_isolated(pixel.view, uvec2(pixel.x, pixel.y))) {
-        Gathered around = gather_wide(target);
-        is_filled = around.weight >= 0.25;
-        if (is_filled) {
-            light = HoleLight(around.diffuse / around.weight, around.specular / around.weight, 1.0);
-            atomicAdd(params.counters.at[kCounterIsolatedHoles], 1u);
-        }
-    }
+    Target target = stored_target(surface.stored, camera, position);
+    HoleLight light = remembered_light(pixel.view, target, seen, surface);
+    bool is_filled = fill_without_rays(pixel, target, light);
     frame.light.at[number] = pack_hole_light(light);
     if (!is_filled) {
         list_hole(number, pixel.view);

@@ -1,7 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // One level of the edge-avoiding à-trous wavelet transform over diffuse and specular illumination together: B3 spline,
-// 5×5 or its inner 3×3, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation 2).
+// 5×5 or its inner 3×3, taps `step` pixels apart (SVGF, section 4.4; variance filtered with squared weights, equation
+// 2).
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 
@@ -34,7 +35,8 @@ vec2 brightest_around(Centre c) {
         ivec2 at = c.at + ivec2(i % 3 - 1, i / 3 - 1);
         if (i != 4 && is_inside(at) && texelFetch(geometry_, tap_texel(c, at)).z == c.id) {
             int texel = tap_texel(c, at);
-            brightest = max(brightest, vec2(luminance(texelFetch(diffuse_, texel).rgb), luminance(texelFetch(specular_, texel).rgb)));
+            vec2 here = vec2(luminance(texelFetch(diffuse_, texel).rgb), luminance(texelFetch(specular_, texel).rgb));
+            brightest = max(brightest, here);
         }
     }
     return brightest;
@@ -48,6 +50,27 @@ void limit(inout vec4 value, float brightest) {
 void store(uint pixel, vec4 diffuse, vec4 specular) {
     params.diffuse.at[pixel] = diffuse;
     params.specular.at[pixel] = specular;
+}
+
+// Adds what the taps around `c` that resemble it hold.
+void add_taps(Centre c, inout Signal diffuse, inout Signal specular) {
+    for (int y = -params.radius; y <= params.radius; ++y) {
+        for (int x = -params.radius; x <= params.radius; ++x) {
+            ivec2 offset = ivec2(x, y) * int(params.step);
+            ivec2 at = c.at + offset;
+            if (offset == ivec2(0) || !is_inside(at)) {
+                continue;
+            }
+            int texel = tap_texel(c, at);
+            uvec4 other = texelFetch(geometry_, texel);
+            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] * geometry_weight(c, offset, other);
+            if (weight > 1e-4) {
+                add_tap(diffuse, texelFetch(diffuse_, texel), weight);
+                float alike = params.follows_lobes != 0u ? lobe_similarity(c, offset, other) : 1.0;
+                add_tap(specular, texelFetch(specular_, texel), weight * alike);
+            }
+        }
+    }
 }
 
 void main() {
@@ -66,23 +89,7 @@ void main() {
     vec2 variance = blurred_variance(c, vec2(diffuse.a, specular.a));
     Signal d = make_signal(diffuse, variance.x);
     Signal s = make_signal(specular, variance.y);
-    for (int y = -params.radius; y <= params.radius; ++y) {
-        for (int x = -params.radius; x <= params.radius; ++x) {
-            ivec2 offset = ivec2(x, y) * int(params.step);
-            ivec2 at = c.at + offset;
-            if (offset == ivec2(0) || !is_inside(at)) {
-                continue;
-            }
-            int texel = tap_texel(c, at);
-            uvec4 other = texelFetch(geometry_, texel);
-            float weight = kFilterKernel[abs(x)] * kFilterKernel[abs(y)] * geometry_weight(c, offset, other);
-            if (weight > 1e-4) {
-                add_tap(d, texelFetch(diffuse_, texel), weight);
-                float alike = params.follows_lobes != 0u ? lobe_similarity(c, offset, other) : 1.0;
-                add_tap(s, texelFetch(specular_, texel), weight * alike);
-            }
-        }
-    }
+    add_taps(c, d, s);
     diffuse = resolve(d);
     specular = resolve(s);
     if (params.limits_outliers != 0u) {

@@ -32,7 +32,8 @@ void main() {
     CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     vec3 direction;
     float cone_width;
-    Surface s = visible_surface(camera, vec2(pixel.x, pixel.y) + 0.5, params.visibility.at[index], direction, cone_width);
+    vec2 position = vec2(pixel.x, pixel.y) + 0.5;
+    Surface s = visible_surface(camera, position, params.visibility.at[index], direction, cone_width);
     uint seed = pixel_seed(params.views.at[pixel.view].seed, pixel.x, pixel.y);
     PathSettings settings = make_path_settings(params.path, params.max_indirect);
     Illumination traced = trace_illumination(settings, params.samples_per_pixel, params.counters, s, direction, cone_width,

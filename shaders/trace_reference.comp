@@ -19,7 +19,8 @@ vec3 trace_primary(SceneInfo info, CameraRecord camera, vec3 direction, float st
     PathSettings settings = make_path_settings(params.path, params.max_indirect);
     Illumination light = trace_path(info, settings, s, direction, cone_width, 1.0 / camera.focal_px, rng);
     Bsdf b = make_bsdf(s, direction);
-    return s.emission + (light.diffuse + light.punctual) * b.diffuse_modulation + light.specular * b.specular_modulation;
+    vec3 diffuse = (light.diffuse + light.punctual) * b.diffuse_modulation;
+    return s.emission + diffuse + light.specular * b.specular_modulation;
 }
 
 void main() {

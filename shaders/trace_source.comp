@@ -18,7 +18,8 @@ bool known_light(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3
     return (params.path & kPathEndsInHistory) != 0u && light_in_history(t, barycentrics, s, b, reflected);
 }
 
-void add_samples(uint index, PagePixel at, Surface s, vec3 direction, float cone_width, float cone_spread, inout Illumination sum) {
+void add_samples(uint index, PagePixel at, Surface s, vec3 direction, float cone_width, float cone_spread,
+                 inout Illumination sum) {
     SceneInfo info = load_scene_info();
     PathSettings settings = make_path_settings(params.path, params.max_indirect);
     bool is_shared = (params.path & kPathScreenSampler) != 0u;

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Fills holes with what lies behind them: along the line on which surfaces move with their depth, the farther of the two
-// surfaces beside the hole is continued into it, mirrored at its edge. Packs four pixels into three words of RGB8.
+// Fills holes with what lies behind them: along the line on which surfaces move with their depth, the farther of the
+// two surfaces beside the hole is continued into it, mirrored at its edge. Packs four pixels into three words of RGB8.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "lib/views.glsl"

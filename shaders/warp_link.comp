@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Which neighbouring texels show the same surface. Inverse depth is an affine function of the position on every plane, so
-// that a surface continues where the neighbour's inverse depth is about the same, or is what either side predicts.
+// Which neighbouring texels show the same surface. Inverse depth is an affine function of the position on every plane,
+// so that a surface continues where the neighbour's inverse depth is about the same, or is what either side predicts.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/warp.h"
 

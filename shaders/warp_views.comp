@@ -21,23 +21,30 @@ bool is_outside(WarpImage source, WarpPath path, vec2 pixel) {
     return any(lessThan(far, vec2(0.0))) || any(greaterThanEqual(far, vec2(source.width, source.height)));
 }
 
-void main() {
-    uvec3 id = gl_GlobalInvocationID;
-    if (id.x >= params.width || id.y >= params.height) {
-        return;
-    }
-    vec2 pixel = vec2(id.xy) + 0.5;
+// The nearest surface that any image shows, and the number of that image.
+WarpHit search_images(uint view, vec2 pixel, out uint shown) {
     WarpHit best = WarpHit(false, false, vec2(0.0), 0.0);
-    uint shown = 0u;
+    shown = 0u;
     for (uint i = 0u; i < params.image_count; ++i) {
         float least = best.is_found ? best.inverse_depth * kNearer : 0.0;
-        WarpHit hit = search_image(params.images.at[i], params.paths.at[id.z * params.image_count + i], pixel, least);
+        WarpHit hit = search_image(params.images.at[i], params.paths.at[view * params.image_count + i], pixel, least);
         bool is_in_front = !hit.is_edge && hit.inverse_depth > least;
         if (hit.is_found && (!best.is_found || is_in_front)) {
             best = hit;
             shown = i;
         }
     }
+    return best;
+}
+
+void main() {
+    uvec3 id = gl_GlobalInvocationID;
+    if (id.x >= params.width || id.y >= params.height) {
+        return;
+    }
+    vec2 pixel = vec2(id.xy) + 0.5;
+    uint shown;
+    WarpHit best = search_images(id.z, pixel, shown);
     uint at = id.z * view_stride(params.width, params.height) + id.y * params.width + id.x;
     params.inverse_depth.at[at] = best.inverse_depth;
     if (best.is_found) {

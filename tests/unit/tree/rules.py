@@ -53,6 +53,7 @@ FORBIDDEN_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "mana
 MAX_FILE_LINES = 400
 MAX_FUNCTION_LINES = 60  # 40 without a reason; those between are reported
 GOOD_FUNCTION_LINES = 40
+MAX_SHADER_MAIN_LINES = 30  # a kernel's main reads as the list of its steps
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 NO_FUNCTION = re.compile(r"(namespace|struct|class|enum|union|using|typedef|extern|static_assert|SHARED_)\b|[#/})]|template")
@@ -146,6 +147,11 @@ def size_problems(path, lines):
         if count > MAX_FUNCTION_LINES:
             problems.append(f"{path}:{start}: {count} lines, at most {MAX_FUNCTION_LINES}: {text.strip()}")
     return problems
+
+
+def shader_main_problems(path, lines):
+    return [f"{path}:{start}: main has {count} lines, at most {MAX_SHADER_MAIN_LINES}"
+            for start, count, text in functions(lines) if text.startswith("void main()") and count > MAX_SHADER_MAIN_LINES]
 
 
 def long_functions(path, lines):

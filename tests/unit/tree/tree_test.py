@@ -50,10 +50,20 @@ class Tree(unittest.TestCase):
                 print("over 40 lines, needs a reason:", line)
         self.expect_none([p for path, lines in cxx_files(CXX_FOLDERS) for p in rules.size_problems(path, lines)])
 
+    def test_mains_of_shaders_are_lists_of_steps(self):
+        shaders = list(files(("shaders",), {".comp", ".vert", ".frag"}))
+        self.assertGreater(len(shaders), 20)
+        self.expect_none([p for path, lines in shaders for p in rules.shader_main_problems(path, lines)])
+
 
 class Rules(unittest.TestCase):
     def includes(self, path, target):
         return rules.include_problems(path, [f'#include "{target}"'])
+
+    def test_shader_mains(self):
+        short = ["void main() {", *["    step();"] * 28, "}"]
+        self.assertEqual([], rules.shader_main_problems("a.comp", short))
+        self.assertEqual(1, len(rules.shader_main_problems("a.comp", short[:1] + ["    step();"] + short[1:])))
 
     def test_arrows(self):
         self.assertEqual([], self.includes("core/scene/bvh.cpp", "core/gpu/buffer.h"))
