@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """All scenarios, in the order of docs/security.md."""
-from scenarios import connections, held, metrics
+from scenarios import access, configure, connections, held, metrics, programs, shares
 
-PARTS = [connections, metrics, held]
+PARTS = [connections, configure, shares, programs, access, metrics, held]
 ALL = [scenario for part in PARTS for scenario in part.SCENARIOS]
