@@ -194,7 +194,12 @@ void Stream::OnCancel() {
 }
 
 void Stream::go_away(const std::string& reason, session::TimePoint at, session::CloseReason why) {
-    state_.lock()->session->go_away(reason, at, why);
+    {
+        auto state = state_.lock();
+        if (!state->verdict) { // otherwise it ends for a reason of its own
+            state->session->go_away(reason, at, why);
+        }
+    }
     pump();
 }
 
@@ -247,7 +252,9 @@ void Stream::tick() {
     {
         auto state = state_.lock();
         const std::uint32_t epoch = state->session->epoch();
-        state->session->on_tick(now);
+        if (!state->verdict) {
+            state->session->on_tick(now);
+        }
         if (state->session->epoch() != epoch) { // adapted
             log_configuration(*state->session);
         }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace fieldcast::bench {
 namespace {
@@ -57,7 +58,7 @@ protected:
         }
     }
 
-    std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "benchmark_scene_test";
+    std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("benchmark_scene_" + std::to_string(::getpid()));
 };
 
 TEST_F(DescriptionTest, ProblemsNameTheMember) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <unistd.h>
 
 namespace fieldcast::bench {
 namespace {
@@ -21,7 +22,7 @@ TEST(Csv, QuotesWhatNeedsIt) {
 }
 
 TEST(Csv, RowsFollowTheColumns) {
-    const auto file = (std::filesystem::path(testing::TempDir()) / "csv_test.csv").string();
+    const auto file = testing::TempDir() + "csv_test_" + std::to_string(::getpid()) + ".csv";
     write_csv(file, {"first", "second, third", "last"},
               {{{"last", 3}, {"first", "a,b"}, {"ignored", 1}}, {{"second, third", 0.5}, {"last", nullptr}}});
     std::ifstream stream(file);

@@ -9,11 +9,13 @@ possible here, for the reason that is printed.
 """
 import os
 import pathlib
+import queue
 import re
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -60,6 +62,34 @@ def is_program(pid):
         return os.path.basename(os.readlink(f"/proc/{pid}/exe")) == PROGRAM
     except OSError:
         return False
+
+
+class Log:
+    """What a process says, taken line by line as it comes."""
+
+    def __init__(self, stream):
+        self.lines, self.news = [], queue.Queue()
+        threading.Thread(target=self.follow, args=(stream,), daemon=True).start()
+
+    def follow(self, stream):
+        for line in stream:
+            self.lines.append(line)
+            self.news.put(line)
+        self.news.put("")  # the end
+
+    def waits_for(self, words, seconds):
+        """Whether a line with these words comes in time."""
+        end = time.monotonic() + seconds
+        try:
+            while line := self.news.get(timeout=max(end - time.monotonic(), 0.0)):
+                if words in line:
+                    return True
+        except queue.Empty:
+            pass
+        return False
+
+    def text(self):
+        return "".join(self.lines)
 
 
 def write_for_server(path, text):
@@ -114,15 +144,17 @@ class Container(unittest.TestCase):
         command = self.server(*self.settings["Cmd"], volumes=volumes)
         process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, process)
-        port = self.wait_for_port(process)
+        log = Log(process.stderr)
+        if not log.waits_for("SERVING", READY):
+            self.fail(f"no server after {READY} s, or it ended: {log.text()[-3000:]}")
+        port = int((self.folder / "state/port").read_text(encoding="utf-8"))
         probe = self.settings["Healthcheck"]["Test"][1:]
         probe[probe.index("127.0.0.1:50151")] = f"127.0.0.1:{port}"
         self.assertIn("SERVING", self.images.buildah(*self.images.in_container(self.container), *probe))
         self.fetch_frame(port)
         for pid in self.programs(process):
             os.kill(pid, getattr(signal, self.settings["StopSignal"]))
-        _, log = process.communicate(timeout=DRAINED)
-        self.assertEqual(0, process.returncode, log)
+        self.assertEqual(0, process.wait(timeout=DRAINED), log.text())
 
     def prepare_service(self):
         """Configuration, token and scene, at the places that the image's own command names."""
@@ -141,15 +173,6 @@ class Container(unittest.TestCase):
         write_for_server(self.folder / "configuration/server.toml", text)
         return ((self.folder / "configuration", "/etc/fieldcast:ro"), (self.folder / "state", "/run/fieldcast"),
                 (pathlib.Path("scenes").resolve(), "/srv/fieldcast/scenes:ro"))
-
-    def wait_for_port(self, process):
-        place, end = self.folder / "state/port", time.monotonic() + READY
-        while time.monotonic() < end and process.poll() is None:
-            if place.exists() and place.read_text(encoding="utf-8").strip():
-                return int(place.read_text(encoding="utf-8"))
-            time.sleep(0.2)
-        self.end(process)
-        self.fail(f"no server after {READY} s, or it ended: {process.stderr.read()[-3000:]}")
 
     def fetch_frame(self, port):
         out = self.folder / "out"

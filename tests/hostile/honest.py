@@ -14,6 +14,8 @@ import subprocess
 import sys
 import time
 
+from waiting import comes_true, let_pass
+
 COME_BACK_S = 0.2
 
 
@@ -36,7 +38,7 @@ def watch(target, grid, out):
                         print(f"frame {time.monotonic():.6f}", file=out, flush=True)
         except (Closed, Broken, OSError) as problem:
             print(f"lost {time.monotonic():.6f} {type(problem).__name__}: {problem}", file=out, flush=True)
-            time.sleep(COME_BACK_S)
+            let_pass(COME_BACK_S)
 
 
 class Honest:
@@ -61,12 +63,9 @@ class Honest:
 
     def wait_for_frames(self, count, timeout_s):
         """Until so many more have come; False if they do not."""
-        wanted, deadline = len(self._times("frame")) + count, time.monotonic() + timeout_s
-        while len(self._times("frame")) < wanted:
-            if time.monotonic() > deadline or self._process.poll() is not None:
-                return False
-            time.sleep(0.02)
-        return True
+        wanted = len(self._times("frame")) + count
+        comes_true(lambda: len(self._times("frame")) >= wanted or self._process.poll() is not None, timeout_s)
+        return len(self._times("frame")) >= wanted
 
     def frames_per_second(self, begin, end):
         return sum(begin < moment <= end for moment in self._times("frame")) / (end - begin)

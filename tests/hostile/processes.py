@@ -9,6 +9,7 @@ import subprocess
 import time
 
 from packages import ROOT
+from waiting import comes_true
 
 START_S = 120.0  # a rendering server with sanitizers on a busy machine
 STOP_S = 60.0
@@ -87,12 +88,10 @@ class Process:
         return time.monotonic() - begin, code
 
     def wait_until(self, is_so, what, timeout_s=START_S):
-        deadline = time.monotonic() + timeout_s
-        while not is_so():
-            if not self.is_running() or time.monotonic() > deadline:
-                self.__exit__()
-                raise NotStarted(f"{what} is not there: {self.text()[-2000:]}", self.child.poll())
-            time.sleep(0.02)
+        comes_true(lambda: is_so() or not self.is_running(), timeout_s)
+        if not is_so():
+            self.__exit__()
+            raise NotStarted(f"{what} is not there: {self.text()[-2000:]}", self.child.poll())
 
 
 class Server(Process):

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program as people and pipelines call it.
 #include "client_fake_server.h"
+#include "frame_time.h"
 #include "program.h"
 #include "test_folder.h"
 
 #include <csignal>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 namespace fieldcast::test {
 namespace {
@@ -25,7 +25,7 @@ void stream(FakeCall& call, int /*number*/) {
         if (!call.read_until(v1::ClientMessage::kFrameAck)) {
             return;
         }
-        std::this_thread::sleep_for(10ms); // the scripted renderer's frame time
+        pass_frame_time(10ms);
     }
 }
 

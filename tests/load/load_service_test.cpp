@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The load harness against the real service, with synthetic frames instead of rendered ones.
-#include "client/load/load_run.h"
+#include "run_until.h"
 #include "server/service/grpc_server.h"
 #include "server_synthetic.h"
 
@@ -24,14 +24,13 @@ Group group_of(const std::string& name, std::uint32_t count, std::uint32_t rows,
 
 class LoadService : public testing::Test {
 protected:
-    LoadResult run(std::vector<Group> groups, Seconds duration) {
+    LoadResult run(std::vector<Group> groups, const std::function<bool(const LoadProgress&)>& has_enough) {
         Scenario scenario;
         scenario.address = "127.0.0.1:" + std::to_string(server_.port());
         scenario.groups = std::move(groups);
         scenario.ramp = 2s;
-        scenario.duration = duration;
         scenario.threads = 2;
-        return run_load(scenario, [](const LoadProgress&) {}, std::stop_token());
+        return test::run_until(scenario, has_enough);
     }
 
     static session::Limits limits() {
@@ -51,7 +50,7 @@ TEST_F(LoadService, MixedClientsAllGetTheirFramesUndamaged) {
     groups[1].decoding = wire::Decoding::kFull;
     groups[2].wish.mode = net::Mode::kScene;
     groups[3].decoding = wire::Decoding::kHeaders;
-    const LoadResult result = run(groups, 4s);
+    const LoadResult result = run(groups, test::frames_for_everybody(15));
     for (const GroupResult& group : result.groups) {
         const Tally& tally = group.tally;
         EXPECT_EQ(tally.failed + tally.refused + tally.lost, 0U) << group.group.name;
@@ -63,7 +62,7 @@ TEST_F(LoadService, MixedClientsAllGetTheirFramesUndamaged) {
 }
 
 TEST_F(LoadService, TwoHundredClientsGetEqualShares) {
-    const LoadResult result = run({group_of("crowd", 200, 3, 3)}, 5s);
+    const LoadResult result = run({group_of("crowd", 200, 3, 3)}, test::frames_for_everybody(20));
     const GroupResult& crowd = result.groups.at(0);
     EXPECT_EQ(crowd.tally.failed + crowd.tally.refused + crowd.tally.lost, 0U);
     EXPECT_EQ(crowd.client_fps.size(), 200U);
@@ -75,7 +74,8 @@ TEST_F(LoadService, TwoHundredClientsGetEqualShares) {
 TEST_F(LoadService, SlowReadersFallBehindAlone) {
     std::vector<Group> groups{group_of("quick", 4, 3, 3), group_of("slow", 4, 3, 3)};
     groups[1].max_bytes_per_second = 4000.0;
-    const LoadResult result = run(groups, 5s);
+    const LoadResult result =
+        run(groups, [](const LoadProgress& progress) { return progress.groups.at(0).frames >= 4 * 20; });
     EXPECT_GE(result.groups[0].fairness, 0.95);
     EXPECT_EQ(result.groups[0].without_frames(), 0U);
     EXPECT_GT(result.groups[0].mean_fps(), 2.0 * result.groups[1].mean_fps());

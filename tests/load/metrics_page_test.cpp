@@ -83,7 +83,7 @@ TEST(Metrics, ReadsSamplesAndNothingElse) {
 
 TEST(Metrics, AreFetched) {
     const OnePage page("HTTP/1.1 200 OK\r\nContent-Type: text/plain\r\n\r\nframes 7\n");
-    const auto metrics = fetch_metrics(page.url(), 5s);
+    const auto metrics = fetch_metrics(page.url(), 60s);
     ASSERT_TRUE(metrics) << metrics.error();
     EXPECT_THAT(*metrics, ElementsAre(Pair("frames", 7.0)));
     EXPECT_THAT(page.request(), testing::StartsWith("GET /metrics HTTP/1.0\r\nHost: 127.0.0.1:"));
@@ -91,11 +91,11 @@ TEST(Metrics, AreFetched) {
 
 TEST(Metrics, SayWhyTheyCannotBeFetched) {
     const OnePage missing("HTTP/1.1 404 Not Found\r\n\r\nframes 7\n");
-    EXPECT_THAT(fetch_metrics(missing.url(), 5s).error(), HasSubstr("answers 'HTTP/1.1 404 Not Found'"));
+    EXPECT_THAT(fetch_metrics(missing.url(), 60s).error(), HasSubstr("answers 'HTTP/1.1 404 Not Found'"));
     const OnePage rubbish("hello");
-    EXPECT_THAT(fetch_metrics(rubbish.url(), 5s).error(), HasSubstr("answers 'hello'"));
+    EXPECT_THAT(fetch_metrics(rubbish.url(), 60s).error(), HasSubstr("answers 'hello'"));
     const OnePage endless("HTTP/1.1 200 OK\r\n\r\n" + std::string(5U << 20, 'x'));
-    EXPECT_THAT(fetch_metrics(endless.url(), 5s).error(), HasSubstr("at most 4 MiB"));
+    EXPECT_THAT(fetch_metrics(endless.url(), 60s).error(), HasSubstr("at most 4 MiB"));
     EXPECT_THAT(fetch_metrics(*parse_metrics_url("http://127.0.0.1:1/"), 500ms).error(), HasSubstr("nobody answers"));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording behind the real service, with many clients: the whole path without Vulkan.
-#include "client/load/load_run.h"
+#include "run_until.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server_synthetic_recording.h"
@@ -40,7 +40,6 @@ TEST_F(ReplayService, ManyClientsComeAndGo) {
     Scenario scenario;
     scenario.address = "127.0.0.1:" + std::to_string(server_->port());
     scenario.ramp = 1s;
-    scenario.duration = 3s;
     scenario.threads = 2;
     for (const char* const name : {"thin", "planes", "decoding", "churn"}) {
         Group& group = scenario.groups.emplace_back();
@@ -51,10 +50,10 @@ TEST_F(ReplayService, ManyClientsComeAndGo) {
     }
     scenario.groups[1].wish.mode = net::Mode::kScene;
     scenario.groups[2].decoding = wire::Decoding::kFull;
-    scenario.groups[3].stay = 300ms;
+    scenario.groups[3].stay = 400ms;
     scenario.groups[3].away = 100ms;
     scenario.groups[3].leaves_abruptly = true;
-    const LoadResult result = run_load(scenario, [](const LoadProgress&) {}, std::stop_token());
+    const LoadResult result = test::run_until(scenario, test::frames_for_everybody(10));
     for (const GroupResult& group : result.groups) {
         EXPECT_EQ(group.tally.failed + group.tally.refused + group.tally.lost, 0U) << group.group.name;
         EXPECT_EQ(group.without_frames(), 0U) << group.group.name;

@@ -2,6 +2,7 @@
 // Changes on a running stream, with both programs. Every frame of the server is the same here (--clock frames --frames
 // 1: the first frame again and again), so the picture of a new epoch must be the one that a fresh client with that
 // configuration gets, to the last bit: the files are compared byte by byte.
+#include "polling.h"
 #include "running_server.h"
 #include "test_folder.h"
 
@@ -11,7 +12,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
-#include <thread>
 
 namespace fieldcast::test {
 namespace {
@@ -104,29 +104,28 @@ TEST_F(Changes, PicturesAreThoseOfAFreshClientAndNothingIsLostBesides) {
 TEST_F(Changes, NestedGridsAreRenderedAndEncodedOnce) {
     const auto small = client("small", {"--grid", "3x3", "--frames", "0", "--save", "none"});
     const auto large = client("large", {"--grid", "6x6", "--frames", "0", "--save", "none"});
-    const auto views = [&](const char* step) {
-        return server_.metric("fieldcast_views_total{channel=\"atelier\",step=\"" + std::string(step) + "\"}");
-    };
     ASSERT_TRUE(server_.shows("fieldcast_sessions{channel=\"atelier\",mode=\"views\",grid=\"3x3\"}", 1.0, kPatience));
     ASSERT_TRUE(server_.shows("fieldcast_sessions{channel=\"atelier\",mode=\"views\",grid=\"6x6\"}", 1.0, kPatience));
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    const double frames_before = server_.metric("fieldcast_frames_rendered_total{channel=\"atelier\"}");
-    while (server_.metric("fieldcast_frames_rendered_total{channel=\"atelier\"}") < frames_before + 4 &&
-           std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::sleep_for(50ms);
-    }
+    const auto frames = [&] { return server_.metric("fieldcast_frames_rendered_total{channel=\"atelier\"}"); };
+    const double frames_before = frames();
+    EXPECT_TRUE(comes_true([&] { return frames() >= frames_before + 4; }, kPatience)) << server_.log();
     // Frames with both clients have 45 views asked for and 36 made; those before, with one of them, share nothing.
+    const std::string page = server_.metrics(); // one moment: frames go on
+    const auto views = [&](const char* step) {
+        return RunningServer::value_on(page, "fieldcast_views_total{channel=\"atelier\",step=\"" +
+                                                 std::string(step) + "\"}");
+    };
     const double asked = views("asked");
     const double rendered = views("rendered");
-    EXPECT_GE(asked - rendered, 2 * 9.0) << "nine views per frame are shared\n" << server_.metrics();
+    EXPECT_GE(asked - rendered, 2 * 9.0) << "nine views per frame are shared\n" << page;
     EXPECT_EQ(static_cast<int>(asked - rendered) % 9, 0);
     EXPECT_LE(rendered - views("encoded"), 36.0) << "all but the frame under way is encoded, each view once";
     for (Program* const program : {small.get(), large.get()}) {
         program->send_signal(SIGINT);
-        EXPECT_EQ(program->exit_code(20s), 130) << program->text();
+        EXPECT_EQ(program->exit_code(kPatience), 130) << program->text();
     }
     server_.process().send_signal(SIGINT);
-    EXPECT_EQ(server_.process().exit_code(20s), 0);
+    EXPECT_EQ(server_.process().exit_code(kPatience), 0);
 
     // The files are complete after Ctrl-C.
     const auto events = nlohmann::json::parse(text_of(folder_ / "trace.json"));

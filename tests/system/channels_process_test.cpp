@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both programs with a camera that a client steers, and with two channels that share the device.
+#include "core/base/guarded.h"
 #include "running_server.h"
 #include "server_client.h"
 #include "test_folder.h"
@@ -74,7 +75,11 @@ public:
               watch(port, wanted, stop);
           }) {}
 
-    int frames() const { return frames_; }
+    /// Waits until it has got so many frames in total.
+    bool gets(int count) {
+        return frames_.lock().wait_until(came_, Clock::now() + kSharingPatience,
+                                         [=](int frames) { return frames >= count; });
+    }
 
 private:
     void watch(int port, const v1::Configure& wanted, const std::stop_token& stop) {
@@ -82,13 +87,15 @@ private:
         call.configure(wanted);
         for (auto trailer = call.read_frame(); trailer && !stop.stop_requested(); trailer = call.read_frame()) {
             call.acknowledge(*trailer);
-            ++frames_;
+            ++*frames_.lock();
+            came_.notify_all();
         }
         call.half_close();
         call.finish();
     }
 
-    std::atomic<int> frames_ = 0;
+    std::condition_variable came_;
+    Guarded<int> frames_;
     std::jthread thread_;
 };
 
@@ -103,28 +110,21 @@ TEST(SharedDevice, AnExpensiveChannelGetsNoMoreOfItThanACheapOne) {
     if (server.lacks_device()) {
         GTEST_SKIP() << server.log();
     }
-    const auto usage = [&](const std::string& channel) {
+    const auto usage = [](const std::string& page, const std::string& channel) {
         const std::string labels = "{channel=\"" + channel + "\"}";
-        return Usage{server.metric("fieldcast_device_seconds_sum" + labels),
-                     server.metric("fieldcast_device_seconds_count" + labels)};
+        return Usage{RunningServer::value_on(page, "fieldcast_device_seconds_sum" + labels),
+                     RunningServer::value_on(page, "fieldcast_device_seconds_count" + labels)};
     };
-    const Watcher expensive(server.port(), "atelier", 6);
+    Watcher expensive(server.port(), "atelier", 6);
     const Watcher cheap(server.port(), "cheap", 1);
-    const auto deadline = Clock::now() + kSharingPatience;
-    const auto wait_for = [&](int frames) {
-        while (expensive.frames() < frames && Clock::now() < deadline) {
-            std::this_thread::sleep_for(10ms); // the count has no event to wait for
-        }
-        EXPECT_GE(expensive.frames(), frames) << server.log();
-    };
-    wait_for(3); // both run
-    const Usage expensive_before = usage("atelier");
-    const Usage cheap_before = usage("cheap");
-    wait_for(11);
-    const double a = usage("atelier").seconds - expensive_before.seconds;
-    const double b = usage("cheap").seconds - cheap_before.seconds;
-    const double cost_a = a / (usage("atelier").frames - expensive_before.frames);
-    const double cost_b = b / (usage("cheap").frames - cheap_before.frames);
+    ASSERT_TRUE(expensive.gets(3)) << "both run\n" << server.log();
+    const std::string before = server.metrics(); // what both have had until one moment
+    ASSERT_TRUE(expensive.gets(11)) << server.log();
+    const std::string after = server.metrics();
+    const double a = usage(after, "atelier").seconds - usage(before, "atelier").seconds;
+    const double b = usage(after, "cheap").seconds - usage(before, "cheap").seconds;
+    const double cost_a = a / (usage(after, "atelier").frames - usage(before, "atelier").frames);
+    const double cost_b = b / (usage(after, "cheap").frames - usage(before, "cheap").frames);
     const double jain = (a + b) * (a + b) / (2.0 * (a * a + b * b));
     RecordProperty("jain", std::to_string(jain));
     std::printf("expensive %.3f s, %.1f ms a frame; cheap %.3f s, %.1f ms a frame; Jain %.4f\n", a, cost_a * 1e3, b,

@@ -2,6 +2,7 @@
 // Receiving with reconnects, and whole runs of `play` in mode views, against a server that follows a script.
 #include "client/play/playback.h"
 #include "client_fake_server.h"
+#include "test_folder.h"
 
 #include "core/image/image_file.h"
 
@@ -33,11 +34,6 @@ net::Wish small_wish() {
 
 class PlayTest : public testing::Test {
 protected:
-    PlayTest() : folder_(fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name()) {
-        fs::remove_all(folder_);
-    }
-    ~PlayTest() override { fs::remove_all(folder_); }
-
     play::PlayOptions options(const FakeServer& server) const {
         play::PlayOptions options;
         options.server = server_options(server);
@@ -53,7 +49,8 @@ protected:
         return image::decode_rgba8(std::as_bytes(std::span(bytes)), file, {}).pixels.front();
     }
 
-    fs::path folder_;
+    const TestFolder own_;
+    const fs::path folder_ = own_ / "out"; ///< is not there yet
     std::stop_source stop_;
 };
 

@@ -2,6 +2,7 @@
 #include "client/net/connection.h"
 #include "client/play/cache_entry.h"
 #include "client/play/scene_cache.h"
+#include "test_folder.h"
 
 #include <algorithm>
 #include <atomic>
@@ -23,16 +24,13 @@ constexpr const char* kSceneText = R"({"asset": {"version": "2.0"}, "scene": 0, 
 
 class SceneCacheTest : public testing::Test {
 protected:
-    SceneCacheTest()
-        : folder_(fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name()) {
-        fs::remove_all(folder_);
+    SceneCacheTest() {
         fs::create_directories(folder_ / "made");
         std::ofstream(folder_ / "made" / "empty.gltf") << kSceneText;
         options_.sky = {0.1F, 0.2F, 0.3F};
         bundle_ = scene::make_bundle(folder_ / "made" / "empty.gltf", options_);
         hash_ = scene::hash_bundle(bundle_);
     }
-    ~SceneCacheTest() override { fs::remove_all(folder_); }
 
     /// Delivers `bundle` from `offset` on, byte by byte; the line is cut after `cut_after` bytes.
     void deliver(std::span<const std::byte> bundle, std::uint64_t offset, const TakePiece& take,
@@ -55,7 +53,8 @@ protected:
     fs::path cache_folder() const { return folder_ / "cache"; }
     fs::path cached(const std::string& suffix = "") const { return cache_folder() / (scene::to_hex(hash_) + suffix); }
 
-    fs::path folder_;
+    const test::TestFolder own_;
+    const fs::path folder_ = own_ / "cache";
     scene::LoadOptions options_;
     std::vector<std::byte> bundle_;
     scene::SceneHash hash_{};

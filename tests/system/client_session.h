@@ -26,7 +26,7 @@ protected:
 
     /// The next event of that kind; others are skipped.
     template <class Kind> std::optional<Kind> next() {
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (auto event = session_->next(deadline)) {
             if (auto* wanted = std::get_if<Kind>(&*event)) {
                 return std::move(*wanted);

@@ -3,6 +3,7 @@
 #include "client/play/live_poses.h"
 #include "client/play/playback.h"
 #include "client_fake_server.h"
+#include "polling.h"
 #include "test_folder.h"
 
 #include <cmath>
@@ -87,14 +88,14 @@ TEST(LivePoses, TheNewestLineWins) {
     ASSERT_EQ(::write(pipe[1], lines.data(), lines.size()), static_cast<ssize_t>(lines.size()));
     std::optional<net::WantedPose> newest;
     bool was_cut = false;
-    const auto deadline = std::chrono::steady_clock::now() + 20s;
-    while ((!newest || position_of(newest).z < 2.0F) && std::chrono::steady_clock::now() < deadline) {
+    const auto last_has_come = [&] { // the lines arrive together or one after the other
         if (const auto pose = poses.take()) {
             newest = pose;
             was_cut = was_cut || pose->cut;
         }
-        std::this_thread::yield(); // the lines arrive together or one after the other
-    }
+        return newest && position_of(newest).z >= 2.0F;
+    };
+    EXPECT_TRUE(comes_true(last_has_come, 20s));
     expect_near(position_of(newest), {0.0F, 0.0F, 2.0F});
     EXPECT_TRUE(was_cut) << "a jump is not lost with its pose";
     EXPECT_FALSE(poses.take().has_value());

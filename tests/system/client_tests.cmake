@@ -45,7 +45,7 @@ target_compile_definitions(security_process_test PRIVATE
 
 fieldcast_test(roundtrip_test LABELS system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/roundtrip_test.cpp
-    DEPENDS fieldcast_gpu fieldcast_image)
+    DEPENDS test_program fieldcast_gpu fieldcast_image)
 add_dependencies(roundtrip_test fieldcast-server fieldcast-client)
 target_compile_definitions(roundtrip_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")

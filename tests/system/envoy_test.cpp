@@ -3,8 +3,8 @@
 // that proxies truncate when either side ends a stream before the other.
 #include "certificate_authority.h"
 #include "http_client.h"
+#include "polling.h"
 #include "program.h"
-#include "relay.h"
 #include "served_channel.h"
 #include "session_count.h"
 #include "test_folder.h"
@@ -31,10 +31,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return place == std::string::npos ? text : text.replace(place, from.size(), to);
 }
 
-/// A port that was free a moment ago: Envoy does not tell which one it took.
-int free_port() {
-    const Relay relay(1);
-    return relay.port();
+/// The port that stands behind `address` in a text; 0: none.
+int port_after(const std::string& text, const std::string& address) {
+    const std::size_t place = text.find(address);
+    return place == std::string::npos ? 0 : std::atoi(text.c_str() + place + address.size());
 }
 
 class Envoy : public testing::Test {
@@ -49,7 +49,7 @@ protected:
         std::string text = text_of("deploy/envoy.yaml");
         text = replaced(text, "/etc/fieldcast/cert.pem", folder_ / "cert.pem");
         text = replaced(text, "/etc/fieldcast/key.pem", folder_ / "key.pem");
-        text = replaced(text, "0.0.0.0, port_value: 8443", "127.0.0.1, port_value: " + std::to_string(port_));
+        text = replaced(text, "0.0.0.0, port_value: 8443", "127.0.0.1, port_value: 0");
         text = replaced(text, "port_value: 50151", "port_value: " + std::to_string(served_.port()));
         text = replaced(text, "port_value: 9901", "port_value: 0");
         write_file(folder_ / "envoy.yaml", text);
@@ -62,9 +62,22 @@ protected:
         return further;
     }
 
+    /// Whether it has told by now which free port it listens on for clients.
+    bool has_told_port() {
+        const int admin_port = port_after(text_of(folder_ / "admin"), "127.0.0.1:");
+        if (admin_port != 0) {
+            const std::string request = "GET /listeners HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+            port_ = port_after(http_get(admin_port, request), "clients::127.0.0.1:");
+        }
+        return port_ != 0;
+    }
+
     /// Starts it and waits until it has found the server healthy.
     void start() {
-        envoy_.emplace(kEnvoy, arguments({"--log-level", "warning"}), folder_ / "envoy.log");
+        envoy_.emplace(kEnvoy, arguments({"--log-level", "warning", "--admin-address-path", folder_ / "admin"}),
+                       folder_ / "envoy.log");
+        ASSERT_TRUE(comes_true([&] { return has_told_port() || !envoy_->is_running(); }, kPatience));
+        ASSERT_NE(port_, 0) << envoy_->text();
         const auto deadline = Clock::now() + kPatience;
         grpc::Status status(StatusCode::UNAVAILABLE, "");
         while (status.error_code() == StatusCode::UNAVAILABLE && Clock::now() < deadline && envoy_->is_running()) {
@@ -108,7 +121,7 @@ protected:
     const TestFolder folder_;
     const CertificateAuthority authority_;
     ServedChannel served_{session::Limits()};
-    const int port_ = free_port();
+    int port_ = 0;
     std::optional<Program> envoy_;
 };
 

@@ -2,6 +2,7 @@
 // What operators look at, on a server that renders: /metrics, --health, logs.
 #include "certificate_authority.h"
 #include "http_client.h"
+#include "polling.h"
 #include "running_server.h"
 #include "server_client.h"
 #include "test_folder.h"
@@ -14,7 +15,6 @@
 #include <set>
 #include <sstream>
 #include <sys/socket.h>
-#include <thread>
 
 namespace fieldcast::test {
 namespace {
@@ -260,14 +260,10 @@ protected:
 
     /// Waits until nobody is left; the number of open files then.
     double open_files_without_clients() const {
-        const auto deadline = std::chrono::steady_clock::now() + kPatience;
-        while (server_.metrics().find("\nfieldcast_sessions{") != std::string::npos) {
-            if (std::chrono::steady_clock::now() >= deadline) {
-                ADD_FAILURE() << "sessions are left over:\n" << server_.metrics();
-                break;
-            }
-            std::this_thread::sleep_for(20ms);
-        }
+        const auto nobody_is_left = [&] {
+            return server_.metrics().find("\nfieldcast_sessions{") == std::string::npos;
+        };
+        EXPECT_TRUE(comes_true(nobody_is_left, kPatience)) << "sessions are left over:\n" << server_.metrics();
         return server_.metric("process_open_fds");
     }
 };
@@ -281,13 +277,9 @@ TEST_F(Churn, AThousandClientsLeaveNothingBehind) {
     for (int i = 0; i < 3; ++i) {
         kill_a_client();
     }
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    double files = open_files_without_clients();
-    while (files > files_before && std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::sleep_for(50ms); // sockets close a moment after their session
-        files = open_files_without_clients();
-    }
-    EXPECT_LE(files, files_before);
+    EXPECT_TRUE(comes_true([&] { return open_files_without_clients() <= files_before; }, kPatience))
+        << "sockets close a moment after their session, but not these: " << server_.metric("process_open_fds")
+        << " instead of " << files_before;
     const double opened = server_.metric("fieldcast_sessions_opened_total");
     EXPECT_GT(opened, 0.0);
     double closed = 0.0;

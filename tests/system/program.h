@@ -24,7 +24,7 @@ public:
     pid_t pid() const { return pid_; }
     bool is_running() { return !exit_code(std::chrono::milliseconds(0)).has_value(); }
 
-    /// Nothing if it still runs after `patience`; 128 + signal if one ended it.
+    /// Waits for its end. Nothing if it still runs after `patience`; 128 + signal if one ended it.
     std::optional<int> exit_code(std::chrono::milliseconds patience);
 
     /// What it has said so far.
@@ -36,6 +36,7 @@ public:
 private:
     std::filesystem::path output_;
     pid_t pid_ = -1;
+    int end_ = -1; ///< a descriptor of the process, readable once it has ended
     std::optional<int> exit_code_;
 };
 

@@ -4,96 +4,29 @@
 // sides": same binary, driver and device, lossless planes, no view history).
 #include "core/gpu/device.h"
 #include "core/image/image_file.h"
+#include "program.h"
+#include "test_folder.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <fcntl.h>
 #include <filesystem>
-#include <fstream>
 #include <gmock/gmock.h>
-#include <iterator>
-#include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <spawn.h>
 #include <string>
-#include <sys/wait.h>
-#include <thread>
-#include <unistd.h>
 #include <vector>
-
-extern char** environ;
 
 namespace fieldcast::test {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
 constexpr auto kLongestRun = 240s; // two cores, busy, software Vulkan, cold pipeline cache
+constexpr auto kEndPatience = 60s; // after Ctrl-C: the picture under way is written
 constexpr int kGridSide = 3;
-
-/// A program with its output in a file. Killed if it outlives this object.
-class Program {
-public:
-    Program(const std::string& file, std::vector<std::string> arguments, const fs::path& log) {
-        arguments.insert(arguments.begin(), file);
-        std::vector<char*> argv;
-        for (std::string& argument : arguments) {
-            argv.push_back(argument.data());
-        }
-        argv.push_back(nullptr);
-        posix_spawn_file_actions_t actions;
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-        if (posix_spawn(&pid_, file.c_str(), &actions, nullptr, argv.data(), environ) != 0) {
-            pid_ = 0;
-        }
-        posix_spawn_file_actions_destroy(&actions);
-    }
-    ~Program() {
-        if (is_running()) {
-            ::kill(pid_, SIGKILL);
-            ::waitpid(pid_, nullptr, 0);
-        }
-    }
-    Program(const Program&) = delete;
-    Program& operator=(const Program&) = delete;
-
-    void interrupt() { ::kill(pid_, SIGINT); }
-    bool is_running() { return pid_ != 0 && !exit_code(0ms); }
-
-    /// Nothing if it still runs after `patience`; −1 if a signal ended it.
-    std::optional<int> exit_code(std::chrono::milliseconds patience) {
-        const auto deadline = std::chrono::steady_clock::now() + patience;
-        int status = 0;
-        while (pid_ != 0 && ::waitpid(pid_, &status, WNOHANG) == 0) {
-            if (std::chrono::steady_clock::now() >= deadline) {
-                return std::nullopt;
-            }
-            std::this_thread::sleep_for(20ms); // a child's end has no event that one can wait for with a deadline
-        }
-        if (pid_ != 0) {
-            pid_ = 0;
-            exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-        }
-        return exit_code_;
-    }
-
-private:
-    pid_t pid_ = 0;
-    int exit_code_ = -1;
-};
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::set<std::string> frame_folders(const fs::path& folder) {
     std::set<std::string> names;
@@ -113,8 +46,6 @@ image::Rgba8 read_view(const fs::path& file) {
 class RoundTrip : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) / ("roundtrip_" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
         try {
             const gpu::Device device;
         } catch (const gpu::NoDeviceError& error) {
@@ -122,7 +53,6 @@ protected:
         }
         ASSERT_TRUE(start_server());
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     bool start_server() {
         const fs::path port_file = folder_ / "port";
@@ -133,16 +63,10 @@ protected:
                                      "isolated,cascade,source,denoise", // no history of views
                                      "--listen", "127.0.0.1:0", "--port-file", port_file},
             folder_ / "server.log");
-        const auto deadline = std::chrono::steady_clock::now() + kLongestRun;
-        while (text_of(port_file).empty() && server_->is_running() && std::chrono::steady_clock::now() < deadline) {
-            std::this_thread::sleep_for(50ms);
-        }
-        port_ = text_of(port_file);
-        while (!port_.empty() && port_.back() == '\n') {
-            port_.pop_back();
-        }
-        EXPECT_FALSE(port_.empty()) << text_of(folder_ / "server.log");
-        return !port_.empty();
+        const bool is_serving = server_->has_said("SERVING", kLongestRun);
+        EXPECT_TRUE(is_serving) << server_->text();
+        port_ = is_serving ? std::to_string(std::stoi(text_of(port_file))) : "";
+        return is_serving;
     }
 
     std::unique_ptr<Program> client(const std::string& name, std::vector<std::string> arguments) {
@@ -235,7 +159,7 @@ protected:
         return count;
     }
 
-    fs::path folder_;
+    const TestFolder folder_;
     std::string port_;
     std::unique_ptr<Program> server_;
 };
@@ -252,8 +176,8 @@ TEST_F(RoundTrip, ViewsAndSceneGiveTheSameImages) {
 
     EXPECT_EQ(surfaces->exit_code(kLongestRun), 0) << text_of(folder_ / "surfaces.log");
     EXPECT_EQ(lean->exit_code(kLongestRun), 0) << text_of(folder_ / "lean.log");
-    thin->interrupt();
-    EXPECT_EQ(thin->exit_code(10s), 130) << text_of(folder_ / "thin.log");
+    thin->send_signal(SIGINT);
+    EXPECT_EQ(thin->exit_code(kEndPatience), 130) << text_of(folder_ / "thin.log");
 
     EXPECT_GE(compare("thin", "surfaces"), 1) << "no frame reached both clients";
     EXPECT_GE(compare("thin", "lean"), 1) << "no frame reached both clients";
@@ -273,8 +197,8 @@ TEST_F(RoundTrip, WarpNeedsNoSceneAndGivesAboutTheSameImages) {
         client("small", with({"--mode", "warp", "--codec", "jpeg,zstd", "--quality", "90", "--frames", "4"}));
     EXPECT_EQ(exact->exit_code(kLongestRun), 0) << text_of(folder_ / "exact.log");
     EXPECT_EQ(small->exit_code(kLongestRun), 0) << text_of(folder_ / "small.log");
-    thin->interrupt();
-    EXPECT_EQ(thin->exit_code(10s), 130) << text_of(folder_ / "thin.log");
+    thin->send_signal(SIGINT);
+    EXPECT_EQ(thin->exit_code(kEndPatience), 130) << text_of(folder_ / "thin.log");
 
     const double of_exact = largest_difference("thin", "exact");
     const double of_small = largest_difference("thin", "small");

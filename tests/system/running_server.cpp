@@ -2,10 +2,10 @@
 #include "running_server.h"
 
 #include "http_client.h"
+#include "polling.h"
 #include "test_folder.h"
 
 #include <atomic>
-#include <thread>
 
 namespace fieldcast::test {
 
@@ -62,25 +62,19 @@ std::string RunningServer::metrics() const {
     return head_end == std::string::npos ? "" : answer.substr(head_end + 4);
 }
 
-double RunningServer::metric(const std::string& series) const {
-    std::string page("\n");
-    page += metrics();
-    const std::size_t line = page.find("\n" + series + " ");
-    return line == std::string::npos ? -1.0 : std::stod(page.substr(line + series.size() + 2));
+double RunningServer::value_on(const std::string& page, const std::string& series) {
+    const std::string lines = "\n" + page;
+    const std::size_t line = lines.find("\n" + series + " ");
+    return line == std::string::npos ? -1.0 : std::stod(lines.substr(line + series.size() + 2));
 }
 
 testing::AssertionResult RunningServer::shows(const std::string& series, double value,
                                               std::chrono::seconds patience) const {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    double now = metric(series);
-    while (now != value) {
-        if (std::chrono::steady_clock::now() >= deadline) {
-            return testing::AssertionFailure() << series << " is " << now << " instead of " << value;
-        }
-        std::this_thread::sleep_for(20ms); // a page has no event to wait for
-        now = metric(series);
+    double now = 0.0;
+    if (comes_true([&] { return (now = metric(series)) == value; }, patience)) {
+        return testing::AssertionSuccess();
     }
-    return testing::AssertionSuccess();
+    return testing::AssertionFailure() << series << " is " << now << " instead of " << value;
 }
 
 } // namespace fieldcast::test

@@ -25,8 +25,11 @@ public:
     /// What /metrics shows now, without the head of the answer.
     std::string metrics() const;
 
-    /// The value of a series as it stands on the page, labels included; -1 if it is not there.
-    double metric(const std::string& series) const;
+    /// The value of a series as it stands on the page now, labels included; -1 if it is not there.
+    double metric(const std::string& series) const { return value_on(metrics(), series); }
+
+    /// The same on a page fetched before: several values of one moment.
+    static double value_on(const std::string& page, const std::string& series);
 
     /// Waits until the series has that value.
     testing::AssertionResult shows(const std::string& series, double value, std::chrono::seconds patience) const;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "served_channel.h"
 
+#include "polling.h"
+
 namespace fieldcast::test {
 
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-constexpr auto kPatience = 15s; // of a test on a busy machine; deadlines of the server are far below
+constexpr auto kPatience = 60s; // of a test on a busy machine; deadlines of the server are far below
 
 } // namespace
 
@@ -23,14 +23,10 @@ double ServedChannel::metric(const std::string& series) {
 }
 
 testing::AssertionResult ServedChannel::shows(const std::string& series, double value) {
-    const auto deadline = Clock::now() + kPatience;
-    while (metric(series) != value) {
-        if (Clock::now() >= deadline) {
-            return testing::AssertionFailure() << series << " is not " << value << " in\n" << page();
-        }
-        std::this_thread::sleep_for(10ms); // a page has no event to wait for
+    if (comes_true([&] { return metric(series) == value; }, kPatience)) {
+        return testing::AssertionSuccess();
     }
-    return testing::AssertionSuccess();
+    return testing::AssertionFailure() << series << " is not " << value << " in\n" << page();
 }
 
 Bystander::Bystander(int port)
@@ -51,7 +47,8 @@ void Bystander::watch(const std::stop_token& stop) {
         }
         if (message->frame_chunk().has_trailer()) {
             call.acknowledge(message->frame_chunk());
-            ++frames_;
+            ++*frames_.lock();
+            came_.notify_all();
         }
     }
     call.half_close();
@@ -60,15 +57,13 @@ void Bystander::watch(const std::stop_token& stop) {
 
 testing::AssertionResult Bystander::gets_more_frames() {
     constexpr std::uint64_t kSome = 5; // more than it may have unacknowledged
-    const std::uint64_t wanted = frames_ + kSome;
-    const auto deadline = Clock::now() + kPatience;
-    while (frames_ < wanted) {
-        if (Clock::now() >= deadline) {
-            return testing::AssertionFailure() << "a client that behaves has got " << frames_ << " frames";
-        }
-        std::this_thread::sleep_for(5ms);
+    auto frames = frames_.lock();
+    const std::uint64_t wanted = *frames + kSome;
+    if (frames.wait_until(came_, std::chrono::steady_clock::now() + kPatience,
+                          [&](std::uint64_t count) { return count >= wanted; })) {
+        return testing::AssertionSuccess();
     }
-    return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "a client that behaves has got " << *frames << " frames";
 }
 
 } // namespace fieldcast::test

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/guarded.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"
 #include "server_synthetic.h"
 
-#include <atomic>
+#include <condition_variable>
 #include <gmock/gmock.h>
 #include <string>
 #include <thread>
@@ -49,7 +50,8 @@ private:
     void watch(const std::stop_token& stop);
 
     const std::shared_ptr<grpc::Channel> connection_;
-    std::atomic<std::uint64_t> frames_ = 0;
+    std::condition_variable came_;
+    Guarded<std::uint64_t> frames_;
     std::jthread thread_;
 };
 

@@ -13,7 +13,7 @@
 namespace fieldcast::test {
 
 /// No call of a test takes longer; beyond, it fails instead of hanging.
-inline constexpr std::chrono::seconds kCallDeadline{20};
+inline constexpr std::chrono::seconds kCallDeadline{60};
 
 /// In plain text, or with `credentials`.
 std::shared_ptr<grpc::Channel>

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <gtest/gtest.h>
 #include <limits>
 #include <thread>
@@ -125,6 +126,23 @@ TEST(FeedTest, StoppingWakesWhoeverWaitsForDemand) {
     EXPECT_FALSE(has_demand);
 }
 
+/// Frames that a subscriber has got.
+class Arrivals {
+public:
+    void count_one() {
+        ++*count_.lock();
+        came_.notify_all();
+    }
+    bool wait_for_one() {
+        return count_.lock().wait_until(came_, std::chrono::steady_clock::now() + 20s,
+                                        [](int count) { return count > 0; });
+    }
+
+private:
+    std::condition_variable came_;
+    Guarded<int> count_;
+};
+
 /// For the thread sanitizer: subscribers come, change their minds and go while frames are published.
 TEST(FeedTest, SubscribersComeAndGoWhilePublishing) {
     test::SyntheticChannel channel;
@@ -133,16 +151,12 @@ TEST(FeedTest, SubscribersComeAndGoWhilePublishing) {
     for (std::uint32_t i = 0; i < 4; ++i) {
         subscribers.emplace_back([&feed, i] {
             for (int round = 0; round < 5; ++round) {
-                const auto frames = std::make_shared<std::atomic<int>>(0);
-                auto subscription =
-                    Feed::subscribe(feed, views_wish(*feed, 1, i + 1), [frames](const FramePtr&) { ++*frames; });
+                const auto frames = std::make_shared<Arrivals>();
+                auto subscription = Feed::subscribe(feed, views_wish(*feed, 1, i + 1),
+                                                    [frames](const FramePtr&) { frames->count_one(); });
                 ASSERT_TRUE(subscription.has_value());
                 EXPECT_FALSE(subscription->change(kPlanes).has_value());
-                const auto deadline = std::chrono::steady_clock::now() + 20s;
-                while (*frames == 0 && std::chrono::steady_clock::now() < deadline) {
-                    std::this_thread::yield();
-                }
-                EXPECT_GT(*frames, 0);
+                EXPECT_TRUE(frames->wait_for_one());
             }
         });
     }

@@ -311,7 +311,7 @@ TEST(Flags, HelpHasExamplesAndEveryGroup) {
 TEST(Flags, PrintsAConfigFileThatItReads) {
     const Invocation printed = read({"--scene", kFile, "--fps", "12", "--no-nee", "--print-config"});
     EXPECT_THAT(printed.text, HasSubstr("fps = 12\n"));
-    const std::string file = testing::TempDir() + "server_flags_test.toml";
+    const std::string file = testing::TempDir() + "server_flags_" + std::to_string(::getpid()) + ".toml";
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});
     EXPECT_THAT(again.problems, IsEmpty()) << printed.text;
@@ -342,7 +342,7 @@ TEST(Flags, APresetGivesDefaultsThatOtherFlagsReplace) {
 TEST(Flags, PrintsAPresetThatItReads) {
     const Invocation printed = read({"--scene", kFile, "--preset", "paper", "--alpha", "0.5", "--print-config"});
     EXPECT_THAT(printed.text, AllOf(HasSubstr("preset = \"paper\"\n"), HasSubstr("accumulate-views = \"on\"\n")));
-    const std::string file = testing::TempDir() + "server_preset_test.toml";
+    const std::string file = testing::TempDir() + "server_preset_" + std::to_string(::getpid()) + ".toml";
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});
     EXPECT_THAT(again.problems, IsEmpty()) << printed.text;

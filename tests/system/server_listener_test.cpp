@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The accept loop and the server's question to itself, with callers and answers of the test's own.
 #include "no_descriptors.h"
+#include "polling.h"
 #include "server/listener/acceptor.h"
 #include "server/listener/self_probe.h"
 
@@ -86,16 +87,9 @@ std::string good_answer() {
     return std::string("\0\0\0\x04\0\0\0\0\0"sv) + std::string("\0\0\x08\x06\x01\0\0\0\0fc-alive"sv);
 }
 
-/// What the acceptor and the probe count has no event to wait for: looks until it is so.
-template <class Condition> bool comes_true(Condition condition) {
-    const auto deadline = Clock::now() + kPatience;
-    while (!condition()) {
-        if (Clock::now() >= deadline) {
-            return false;
-        }
-        std::this_thread::yield();
-    }
-    return true;
+/// What the acceptor and the probe count has no event to wait for.
+template <class Condition> bool comes_true(const Condition& condition) {
+    return test::comes_true(condition, kPatience);
 }
 
 TEST(Descriptors, ConnectionsLeaveAReserve) {

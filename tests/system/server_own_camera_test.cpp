@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who gets a camera of its own, and that nothing is left of those that have gone.
+#include "polling.h"
 #include "server_workshop.h"
 
 #include <filesystem>
@@ -186,17 +187,17 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
         auto own = channel_->opener()->open({.frames_per_second = 1.0F});
         refused += own ? 0 : 1;
         if (own && i % 7 == 0) { // this one gets as far as frames
-            std::atomic<bool> has_frame = false;
+            Guarded<bool> has_frame;
+            std::condition_variable came;
             feed::ViewsWish wish;
             wish.format.width_px = wish.format.height_px = 4;
-            auto subscription =
-                feed::Feed::subscribe(own->feed(), wish, [&](const feed::FramePtr&) { has_frame = true; });
+            auto subscription = feed::Feed::subscribe(own->feed(), wish, [&](const feed::FramePtr&) {
+                *has_frame.lock() = true;
+                came.notify_all();
+            });
             ASSERT_TRUE(subscription.has_value());
-            const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-            while (!has_frame && std::chrono::steady_clock::now() < deadline) {
-                std::this_thread::yield();
-            }
-            EXPECT_TRUE(has_frame);
+            EXPECT_TRUE(has_frame.lock().wait_until(came, std::chrono::steady_clock::now() + Workshop::kPatience,
+                                                    [](bool has) { return has; }));
             subscription->end();
             own->close();
             EXPECT_TRUE(workshop_.wait_until_living(0)); // the last callback has returned
@@ -204,11 +205,8 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
     }
     EXPECT_LT(refused, kOpens) << "only while others were being ended";
     ASSERT_TRUE(workshop_.wait_until_living(0));
-    const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (Holdings::now().threads > before.threads && std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::yield(); // a joined thread leaves the list of the kernel a moment later
-    }
-    EXPECT_LE(Holdings::now().threads, before.threads);
+    EXPECT_TRUE(test::comes_true([&] { return Holdings::now().threads <= before.threads; }, Workshop::kPatience))
+        << "a joined thread leaves the list of the kernel a moment later, but not these: " << Holdings::now().threads;
     EXPECT_LE(Holdings::now().descriptors, before.descriptors);
     EXPECT_EQ(workshop_.threads().size(), 1U) << "made and ended by one thread";
     EXPECT_FALSE(workshop_.threads().contains(std::this_thread::get_id())) << "which is not ours";
@@ -219,11 +217,7 @@ TEST_F(OwnCamerasTest, ACameraThatCannotBeMadeFailsAlone) {
     ASSERT_TRUE(workshop_.wait_until_living(1));
     workshop_.fail_from_now_on();
     feed::OwnFeed bad = open();
-    const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (!bad.feed()->has_failed() && std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::yield();
-    }
-    EXPECT_TRUE(bad.feed()->has_failed());
+    EXPECT_TRUE(test::comes_true([&] { return bad.feed()->has_failed(); }, Workshop::kPatience));
     EXPECT_FALSE(good.feed()->has_failed());
     EXPECT_FALSE(channel_->has_failed());
 }

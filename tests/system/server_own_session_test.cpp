@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions on a channel that gives each of them a camera.
+#include "polling.h"
 #include "server/session/session.h"
 #include "server_workshop.h"
 
@@ -150,7 +151,7 @@ TEST_F(OwnSession, TheCameraGoesWithTheChannelOrTheSession) {
     configure(*bob, "own");
     ASSERT_TRUE(workshop_.wait_until_living(2));
     EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
-    EXPECT_TRUE(workshop_.wait_until_only(feed_of(*bob)));
+    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*bob)}));
     bob->end();
     ASSERT_TRUE(workshop_.wait_until_living(0));
 }
@@ -164,7 +165,7 @@ TEST_F(OwnSession, FromOneChannelToTheNext) {
     EXPECT_EQ(configure(*ann, "other").configured().channel(), "other");
     EXPECT_EQ(next(*ann).steering_released().reason(), v1::STEERING_RELEASE_REASON_RECONFIGURED);
     EXPECT_NE(feed_of(*ann), before);
-    EXPECT_TRUE(workshop_.wait_until_only(feed_of(*ann)));
+    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*ann)}));
     request(*ann);
 }
 
@@ -179,12 +180,7 @@ TEST_F(OwnSession, FromOneChannelToTheNextWhenEverythingIsTaken) {
     EXPECT_EQ(feed_of(*bob), of_bob);
     EXPECT_EQ(configure(*bob, "other", 45.0F).configured().channel(), "other");
     EXPECT_EQ(configure(*ann, "other", 50.0F).configured().channel(), "other");
-    const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (!(workshop_.has(feed_of(*ann)) && workshop_.has(feed_of(*bob))) &&
-           std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::yield();
-    }
-    EXPECT_TRUE(workshop_.wait_until_living(2));
+    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*ann), feed_of(*bob)}));
     EXPECT_EQ(workshop_.most_living(), 2) << "memory of the device never held three";
 }
 
@@ -229,10 +225,7 @@ TEST_F(OwnSession, AFailedCameraEndsItsSession) {
     workshop_.fail_from_now_on();
     const auto ann = open();
     configure(*ann, "own");
-    const auto deadline = std::chrono::steady_clock::now() + Workshop::kPatience;
-    while (!feed_of(*ann)->has_failed() && std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::yield();
-    }
+    ASSERT_TRUE(test::comes_true([&] { return feed_of(*ann)->has_failed(); }, Workshop::kPatience));
     ann->on_tick(now_);
     const v1::ServerMessage message = next(*ann);
     ASSERT_EQ(message.message_case(), Kind::kGoingAway);

@@ -1,133 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server as a process: exit codes, port file, first frames of a rendered scene, signals.
 #include "core/wire/frame_assembler.h"
+#include "program.h"
 #include "server_client.h"
+#include "test_folder.h"
 
 #include <csignal>
-#include <fcntl.h>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <spawn.h>
-#include <sstream>
-#include <sys/wait.h>
-#include <thread>
-#include <unistd.h>
-
-extern char** environ;
 
 namespace fieldcast::test {
 namespace {
 
-using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
 constexpr const char* kScene = "scenes/atelier/atelier.gltf";
-constexpr std::chrono::seconds kStartDeadline{240}; // a software device under sanitizers on a busy machine
+constexpr std::chrono::seconds kPatience{240}; // a software device under sanitizers on a busy machine
 
-/// A running fieldcast-server; killed when destroyed.
-class Process {
-public:
-    explicit Process(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), FIELDCAST_SERVER);
-        std::vector<char*> pointers;
-        for (std::string& argument : arguments) {
-            pointers.push_back(argument.data());
-        }
-        pointers.push_back(nullptr);
-        posix_spawn_file_actions_t actions;
-        posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, 1, output().c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
-        posix_spawn_file_actions_adddup2(&actions, 1, 2);
-        EXPECT_EQ(posix_spawn(&pid_, FIELDCAST_SERVER, &actions, nullptr, pointers.data(), environ), 0);
-        posix_spawn_file_actions_destroy(&actions);
+class ServerProcess : public testing::Test {
+protected:
+    Program start(const std::vector<std::string>& arguments) {
+        return Program(FIELDCAST_SERVER, arguments, folder_ / "output.txt");
     }
 
-    ~Process() {
-        if (!exit_code_) {
-            kill(pid_, SIGKILL);
-            wait();
-        }
-        std::filesystem::remove(output());
-    }
-
-    Process(const Process&) = delete;
-    Process& operator=(const Process&) = delete;
-
-    void terminate() const { kill(pid_, SIGTERM); }
-
-    bool has_ended() {
-        int status = 0;
-        if (!exit_code_ && waitpid(pid_, &status, WNOHANG) == pid_) {
-            exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        }
-        return exit_code_.has_value();
-    }
-
-    /// Exit code, 128 + signal if it was killed.
-    int wait() {
-        int status = 0;
-        if (!exit_code_ && waitpid(pid_, &status, 0) == pid_) {
-            exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        }
-        return exit_code_.value_or(-1);
-    }
-
-    std::string text() const {
-        std::ostringstream text;
-        text << std::ifstream(output()).rdbuf();
-        return text.str();
-    }
-
-private:
-    std::string output() const { return testing::TempDir() + "server_process_" + std::to_string(getpid()) + ".log"; }
-
-    pid_t pid_ = -1;
-    std::optional<int> exit_code_;
+    const TestFolder folder_;
 };
 
-TEST(ServerProcess, HelpIsNoError) {
-    Process server({"--help"});
-    EXPECT_EQ(server.wait(), 0);
+TEST_F(ServerProcess, HelpIsNoError) {
+    Program server = start({"--help"});
+    EXPECT_EQ(server.exit_code(kPatience), 0);
     EXPECT_NE(server.text().find("Examples:"), std::string::npos);
 }
 
-TEST(ServerProcess, WrongFlagsExitWithTwo) {
-    Process server({"--scene", "/no/such.gltf", "--listen", "0.0.0.0:1"});
-    EXPECT_EQ(server.wait(), 2);
+TEST_F(ServerProcess, WrongFlagsExitWithTwo) {
+    Program server = start({"--scene", "/no/such.gltf", "--listen", "0.0.0.0:1"});
+    EXPECT_EQ(server.exit_code(kPatience), 2);
     EXPECT_NE(server.text().find("no such file"), std::string::npos);
     EXPECT_NE(server.text().find("loopback"), std::string::npos);
 }
 
-TEST(ServerProcess, ChecksAConfiguration) {
-    Process server({"--scene", kScene, "--check-config"});
-    EXPECT_EQ(server.wait(), 0) << server.text();
+TEST_F(ServerProcess, ChecksAConfiguration) {
+    Program server = start({"--scene", kScene, "--check-config"});
+    EXPECT_EQ(server.exit_code(kPatience), 0) << server.text();
 }
 
-TEST(ServerProcess, WrongConfigurationExitsWithTwoAndNamesThePlace) {
-    const std::string file = testing::TempDir() + "server_process_" + std::to_string(getpid()) + ".toml";
-    std::ofstream(file) << "scene = \"" << kScene << "\"\n\nspp = 0\n";
-    Process server({"--config", file, "--check-config"});
-    EXPECT_EQ(server.wait(), 2);
+TEST_F(ServerProcess, WrongConfigurationExitsWithTwoAndNamesThePlace) {
+    const std::string file = folder_ / "server.toml";
+    write_file(file, "scene = \"" + std::string(kScene) + "\"\n\nspp = 0\n");
+    Program server = start({"--config", file, "--check-config"});
+    EXPECT_EQ(server.exit_code(kPatience), 2);
     EXPECT_NE(server.text().find(file + ":3: spp 0"), std::string::npos) << server.text();
-    std::filesystem::remove(file);
 }
 
 /// A server that renders small images of the demo scene.
 class RenderingServer : public testing::Test {
 protected:
-    explicit RenderingServer(const std::vector<std::string>& more_flags = {}) : server_(flags(more_flags)) {}
+    explicit RenderingServer(const std::vector<std::string>& more_flags = {})
+        : server_(FIELDCAST_SERVER, flags(more_flags), folder_ / "server.log") {}
 
     void SetUp() override {
-        while (!std::filesystem::exists(port_file_)) {
-            if (server_.has_ended()) {
-                ASSERT_NE(server_.text().find("Vulkan d"), std::string::npos) << server_.text();
-                GTEST_SKIP() << server_.text();
-            }
-            ASSERT_LT(Clock::now(), deadline_) << server_.text();
-            std::this_thread::sleep_for(20ms); // a file has no event to wait for
+        if (!server_.has_said("SERVING", kPatience)) {
+            ASSERT_NE(server_.text().find("Vulkan d"), std::string::npos) << server_.text();
+            GTEST_SKIP() << server_.text();
         }
-        std::ifstream(port_file_) >> port_;
+        port_ = std::stoi(text_of(port_file_));
     }
 
     /// Headers of the next `count` frames, acknowledged.
@@ -157,9 +91,9 @@ protected:
         return flags;
     }
 
-    const std::string port_file_ = testing::TempDir() + "server_port_" + std::to_string(getpid());
-    const Clock::time_point deadline_ = Clock::now() + kStartDeadline;
-    Process server_;
+    const TestFolder folder_;
+    const std::filesystem::path port_file_ = folder_ / "port";
+    Program server_;
     int port_ = 0;
 };
 
@@ -182,13 +116,13 @@ TEST_F(LoopingServer, SendsBothModesAndDrains) {
     EXPECT_EQ(planes.at(1).planes().planes_size(), 2);
     EXPECT_GT(planes.at(1).settings().exposure(), 0.0F);
     EXPECT_GT(planes.at(1).render_times_size(), 0);
-    server_.terminate();
+    server_.send_signal(SIGTERM);
     for (OpenCall* const call : {&thin, &thick}) {
         EXPECT_TRUE(call->read_until(v1::ServerMessage::kGoingAway).has_value());
         call->half_close();
         EXPECT_TRUE(call->finish().ok());
     }
-    EXPECT_EQ(server_.wait(), 0) << server_.text();
+    EXPECT_EQ(server_.exit_code(kPatience), 0) << server_.text();
     EXPECT_FALSE(std::filesystem::exists(port_file_));
 }
 
@@ -196,10 +130,10 @@ TEST_F(LoopingServer, SecondSignalStopsAtOnce) {
     OpenCall call(connect(port_));
     call.configure();
     headers(call, 1);
-    server_.terminate();
+    server_.send_signal(SIGTERM);
     EXPECT_TRUE(call.read_until(v1::ServerMessage::kGoingAway).has_value());
-    server_.terminate();
-    EXPECT_EQ(server_.wait(), 0) << server_.text();
+    server_.send_signal(SIGTERM);
+    EXPECT_EQ(server_.exit_code(kPatience), 0) << server_.text();
     EXPECT_FALSE(call.finish().ok());
 }
 
@@ -260,7 +194,7 @@ protected:
 };
 
 TEST_F(SteeredServer, PosesMoveTheCameraAndThePicture) {
-    OpenCall call(connect(port_), "", kStartDeadline); // some twenty frames
+    OpenCall call(connect(port_), "", kPatience); // some twenty frames
     v1::Configure wanted;
     wanted.mutable_grid()->set_rows(1);
     wanted.mutable_grid()->set_cols(1);
@@ -303,23 +237,21 @@ TEST_F(SteeredServer, PosesMoveTheCameraAndThePicture) {
     EXPECT_TRUE(call.finish().ok());
 }
 
-TEST(ServerProcess, RenderWritesALightFieldWithoutServing) {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "fieldcast_render_test";
-    std::filesystem::remove_all(folder);
-    Process process({"render", "--scene", kScene, "--size", "64x36", "--largest-grid", "2x3", "--sources", "diagonal",
-                     "--count", "2", "--every-frame", "--out", folder.string()});
-    EXPECT_EQ(process.wait(), 0);
+TEST_F(ServerProcess, RenderWritesALightFieldWithoutServing) {
+    const std::filesystem::path field = folder_ / "field";
+    Program process = start({"render", "--scene", kScene, "--size", "64x36", "--largest-grid", "2x3", "--sources",
+                             "diagonal", "--count", "2", "--every-frame", "--out", field});
+    EXPECT_EQ(process.exit_code(kPatience), 0) << process.text();
     for (const char* frame : {"frame_000000", "frame_000001"}) {
-        EXPECT_TRUE(std::filesystem::exists(folder / frame / "view_r1_c2.png")) << frame;
-        EXPECT_TRUE(std::filesystem::exists(folder / frame / "source.exr")) << frame;
+        EXPECT_TRUE(std::filesystem::exists(field / frame / "view_r1_c2.png")) << frame;
+        EXPECT_TRUE(std::filesystem::exists(field / frame / "source.exr")) << frame;
     }
-    std::filesystem::remove_all(folder);
 }
 
-TEST(ServerProcess, ViewsThatTheDeviceCannotDenoiseEndTheStart) {
-    Process process({"render", "--scene", kScene, "--route", "red", "--size", "8192x8192", "--largest-grid", "8x9",
-                     "--count", "1"}); // 4.8 · 10⁹ pixels: more than a texel buffer can have
-    EXPECT_EQ(process.wait(), 2);
+TEST_F(ServerProcess, ViewsThatTheDeviceCannotDenoiseEndTheStart) {
+    Program process = start({"render", "--scene", kScene, "--route", "red", "--size", "8192x8192", "--largest-grid",
+                             "8x9", "--count", "1"}); // 4.8 · 10⁹ pixels: more than a texel buffer can have
+    EXPECT_EQ(process.exit_code(kPatience), 2);
     EXPECT_NE(process.text().find("72 views of 8192x8192 are too many for"), std::string::npos) << process.text();
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "frame_time.h"
 #include "server/recording/form.h"
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
@@ -201,7 +202,7 @@ TEST_F(RecordingTest, RecordsAChannelAsItIsPublished) {
                 frames_.push_back(frame);
                 feed->publish(frame);
             }
-            std::this_thread::sleep_for(5ms); // frames of a channel have a rate
+            test::pass_frame_time(5ms);
         }
         EXPECT_EQ(feed->subscriber_count(), 0U) << "the channel may sleep";
     }

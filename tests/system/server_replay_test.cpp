@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording behind the real service: the server's whole path without Vulkan.
 #include "core/lightfield/frame_rate.h"
+#include "polling.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"
@@ -174,10 +175,11 @@ TEST_F(ServedReplay, ClientsComeAndGo) {
             }
         });
     }
-    while (frames < 6 * 4 * 2 * 3 / 2) {
+    const auto half_has_come = [&] {
         EXPECT_NE(registry_->page().text().find("fieldcast_replayed_frames_total"), std::string::npos);
-        std::this_thread::yield();
-    }
+        return frames >= 6 * 4 * 2 * 3 / 2;
+    };
+    EXPECT_TRUE(test::comes_true(half_has_come, 60s));
     clients.clear();
     EXPECT_EQ(frames, 6U * 4 * 2 * 3);
     server_->begin_drain("the test is over");

@@ -3,6 +3,7 @@
 #include "certificate_authority.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "polling.h"
 #include "server/access/listening_rule.h"
 #include "server/service/grpc_server.h"
 #include "server_client.h"
@@ -93,13 +94,9 @@ protected:
 
     /// Whether calls with `token` come to end like that: a change of the token file has no event to wait for.
     bool comes_to_status(const service::GrpcServer& server, const std::string& token, StatusCode wanted) const {
-        const auto deadline = Clock::now() + kReloadPatience;
-        StatusCode now = status_of(server.port(), trusting(authority_), token).error_code();
-        while (now != wanted && Clock::now() < deadline) {
-            std::this_thread::sleep_for(50ms);
-            now = status_of(server.port(), trusting(authority_), token).error_code();
-        }
-        return now == wanted;
+        return comes_true(
+            [&] { return status_of(server.port(), trusting(authority_), token).error_code() == wanted; },
+            kReloadPatience);
     }
 
     const TestFolder folder_;

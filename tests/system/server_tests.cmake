@@ -98,7 +98,7 @@ target_link_libraries(synthetic_server PRIVATE server_synthetic fieldcast_server
 # Renders; the tests that need a device skip without one.
 fieldcast_test(server_process_test LABELS gpu system TIMEOUT 300
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_process_test.cpp
-    DEPENDS server_client fieldcast_wire)
+    DEPENDS server_client test_program fieldcast_wire)
 target_compile_definitions(server_process_test PRIVATE FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>")
 add_dependencies(server_process_test fieldcast-server)
 
@@ -130,8 +130,7 @@ target_compile_definitions(change_process_test PRIVATE
 
 # Through the proxy of deploy/; skips where it cannot be installed. See tests/deploy.
 if(NOT FIELDCAST_SANITIZE MATCHES thread)
-    add_executable(envoy_test ${CMAKE_CURRENT_LIST_DIR}/envoy_test.cpp ${CMAKE_CURRENT_LIST_DIR}/relay.cpp
-                   ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp)
+    add_executable(envoy_test ${CMAKE_CURRENT_LIST_DIR}/envoy_test.cpp ${CMAKE_CURRENT_LIST_DIR}/served_channel.cpp)
     target_link_libraries(envoy_test PRIVATE certificate_authority http_client server_client test_program server_synthetic
                           fieldcast_server_service fieldcast_warnings GTest::gmock GTest::gtest_main)
     add_dependencies(envoy_test fieldcast-client)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that share a device: who gets how much of it, on a simulated clock and with threads.
+#include "frame_time.h"
 #include "server/channel/device_turns.h"
 
 #include <array>
@@ -128,27 +129,25 @@ TEST(DeviceTurns, OneAtATimeWithThreadsAndStops) {
     DeviceTurns turns;
     std::atomic<int> inside = 0;
     std::atomic<int> most = 0;
-    std::array<std::atomic<int>, 2> counts{};
+    Guarded<std::array<int, 2>> counts;
+    std::condition_variable counted;
+    const auto enough = [](const std::array<int, 2>& each) { return each[0] >= 5 && each[1] >= 5; };
     const auto work = [&](const std::stop_token& stop, std::size_t index, Duration cost) {
         DevicePlace place(turns);
         while (const auto turn = place.wait(stop)) {
             most = std::max(most.load(), ++inside);
-            std::this_thread::sleep_for(cost); // stands for the device
+            test::pass_frame_time(cost);
             --inside;
-            ++counts.at(index);
+            ++counts.lock()->at(index);
+            counted.notify_all();
         }
     };
     {
         std::jthread slow([&](const std::stop_token& stop) { work(stop, 0, 8ms); });
         std::jthread fast([&](const std::stop_token& stop) { work(stop, 1, 2ms); });
-        const auto deadline = std::chrono::steady_clock::now() + 20s;
-        while ((counts[0] < 5 || counts[1] < 5) && std::chrono::steady_clock::now() < deadline) {
-            std::this_thread::sleep_for(1ms); // the counts have no event to wait for
-        }
+        EXPECT_TRUE(counts.lock().wait_until(counted, std::chrono::steady_clock::now() + 20s, enough));
     } // stops both, whoever waits
     EXPECT_EQ(most, 1);
-    EXPECT_GE(counts[0], 5);
-    EXPECT_GE(counts[1], 5);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "server/camera/own_cameras.h"
 #include "server_synthetic.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <set>
 #include <stdexcept>
@@ -39,8 +40,12 @@ public:
     bool wait_until_living(int count) {
         return wait([=](const State& state) { return static_cast<int>(state.living.size()) == count; });
     }
-    bool wait_until_only(const std::shared_ptr<feed::Feed>& feed) {
-        return wait([&](const State& state) { return state.living.size() == 1 && state.living.contains(feed.get()); });
+    /// The cameras of these feeds live, and no others.
+    bool wait_until_only(const std::vector<std::shared_ptr<feed::Feed>>& feeds) {
+        return wait([&](const State& state) {
+            return state.living.size() == feeds.size() &&
+                   std::ranges::all_of(feeds, [&](const auto& feed) { return state.living.contains(feed.get()); });
+        });
     }
     /// A camera of that feed lives.
     bool has(const std::shared_ptr<feed::Feed>& feed) { return state_.lock()->living.contains(feed.get()); }

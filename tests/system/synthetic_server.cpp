@@ -3,6 +3,7 @@
 //     synthetic_server PORT_FILE
 // 30 frames a second of 64x36 pixels until INT or TERM; 36 views as they are (--codec raw) are 60 Mbit/s.
 #include "core/base/stop_signals.h"
+#include "frame_time.h"
 #include "server/service/grpc_server.h"
 #include "server_synthetic.h"
 
@@ -18,11 +19,12 @@ constexpr float kFramesPerSecond = 30.0F;
 
 void publish_until(const std::stop_token& stop, feed::Feed& feed) {
     WorkerPool pool(1);
-    auto next = std::chrono::steady_clock::now();
+    using Clock = std::chrono::steady_clock;
+    auto next = Clock::now();
     for (std::uint64_t frame_id = 1; feed.wait_for_demand(stop); ++frame_id) {
         feed.publish(test::synthetic_frame(feed.info(), feed.demand(), frame_id, pool));
-        next = std::max(next + std::chrono::microseconds(33'333), std::chrono::steady_clock::now());
-        std::this_thread::sleep_until(next);
+        next = std::max(next + std::chrono::microseconds(33'333), Clock::now());
+        test::pass_frame_time(next - Clock::now());
     }
 }
 

@@ -9,6 +9,7 @@ from fieldcast.v1 import light_field_pb2 as v1
 from fieldcast.v1 import types_pb2 as types
 from scenario import ATELIER, Bounds, Scenario, Setup
 from session import Session
+from waiting import let_pass
 
 RENDERED_VIEWS = 'fieldcast_views_total{channel="atelier",step="rendered"}'
 ENCODED_VIEWS = 'fieldcast_views_total{channel="atelier",step="encoded"}'
@@ -42,7 +43,7 @@ def large_configures(field):
                 except Closed:
                     sessions.remove(session)
             next_at += 1 / 18
-            time.sleep(max(0.0, next_at - time.monotonic()))
+            let_pass(max(0.0, next_at - time.monotonic()))
     field.expect("they are granted while the rate allows it", granted > 3, granted)
 
 
@@ -98,7 +99,7 @@ def steering_flood(field):
             session.call.messages.clear()
             asked += 1
             next_at += 1 / 430
-            time.sleep(max(0.0, next_at - time.monotonic()))
+            let_pass(max(0.0, next_at - time.monotonic()))
         field.expect("steering was asked for", asked > 200, asked)
 
 

@@ -13,6 +13,7 @@ from fieldcast.v1 import types_pb2 as types
 from raw import PREFACE, RawConnection, frame, header_frames, literal_field
 from scenario import Bounds, Scenario, Setup
 from session import OPEN, Session
+from waiting import let_pass
 
 SEED = 14
 HUGE = 0xFFFFFFFF
@@ -171,7 +172,7 @@ def drain_under_attack(field):
                     refused += late.call(OPEN).finish(0.2) not in (None, 0)
             except (OSError, Closed):
                 refused += 1
-                time.sleep(0.05)
+                let_pass(0.05)
         took = time.monotonic() - begin
         field.expect("has ended within the 8 s that the drain may take", took < 9.0,
                  f"{took:.1f} s, {refused} turned away")

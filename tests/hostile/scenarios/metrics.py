@@ -7,6 +7,7 @@ import threading
 import time
 
 from scenario import Bounds, Scenario, Setup
+from waiting import let_pass
 
 
 
@@ -63,7 +64,7 @@ class Dribble:
 def dribbled(field, is_encrypted):
     """Somebody scrapes beside them; then the server is stopped."""
     with Dribble(field, is_encrypted, 3):
-        time.sleep(1.0)
+        let_pass(1.0)
         try:
             took, is_page = scrape(field, is_encrypted)
         except OSError as problem:

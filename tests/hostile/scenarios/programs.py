@@ -9,6 +9,7 @@ from connection import Connection, Target
 from fake_server import FakeServer
 from scenario import ATELIER, Bounds, Scenario, Setup
 from session import Session
+from waiting import comes_true
 
 
 
@@ -29,12 +30,11 @@ def escape_sequences(field):
 
 def stopped_while_starting(field):
     """TERM before the server serves."""
-    log, begin = field.folder / "starting.log", time.monotonic()
+    log = field.folder / "starting.log"
     port_file = field.folder / "starting.port"
     with processes.Process([field.program, *ATELIER, "--listen", "127.0.0.1:0", "--port-file",
                             port_file, "--log-format", "json"], log) as starting:
-        while not log.read_bytes() and starting.is_running() and time.monotonic() - begin < 30.0:
-            time.sleep(0.01)
+        comes_true(lambda: log.read_bytes() or not starting.is_running(), 30.0)
         took, code = starting.stop()
         field.expect("it was still starting", "SERVING" not in starting.text())
     field.expect("ends within 10 s", took <= 10.0, f"{took:.1f} s, exit code {code}")

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/stop_signals.h"
 
+#include <condition_variable>
 #include <csignal>
 #include <gtest/gtest.h>
+#include <mutex>
 #include <thread>
 #include <unistd.h>
 
@@ -23,9 +25,10 @@ TEST(StopSignals, AreWaitedFor) {
 
 TEST(StopSignals, ReachWhoWaitsThroughThreadsThatExistedBefore) {
     const std::jthread earlier([](const std::stop_token& stop) { // as libraries start some before main()
-        while (!stop.stop_requested()) {
-            std::this_thread::sleep_for(1ms);
-        }
+        std::mutex mutex;
+        std::condition_variable_any never;
+        std::unique_lock lock(mutex);
+        never.wait(lock, stop, [] { return false; });
     });
     const StopSignals signals;
     for (const int signal : {SIGTERM, SIGTERM, SIGINT}) {

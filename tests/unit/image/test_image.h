@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace fieldcast::test {
@@ -31,7 +32,8 @@ class TestFolder {
 public:
     TestFolder() {
         const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        path_ = std::filesystem::path(testing::TempDir()) / (std::string(info->test_suite_name()) + "." + info->name());
+        const std::string name = std::string(info->test_suite_name()) + "." + info->name();
+        path_ = std::filesystem::path(testing::TempDir()) / (name + "." + std::to_string(::getpid())); // others run too
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }

@@ -50,6 +50,16 @@ LIBRARIES = {
 
 TABLE_ROW = re.compile(r"\s+\{.*\},?$")
 FORBIDDEN_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "manager"}
+
+# Tests wait for events with a deadline. Files that may let time pass all the same, and why.
+SLEEPERS = {
+    "tests/hostile/waiting.py": "measures others meanwhile, and looks at what has no event; for all scenarios",
+    "tests/system/frame_time.h": "stands for the time that a frame takes on a device which is not there",
+    "tests/system/polling.h": "looks at what has no event, again and again until a deadline; for all tests",
+}
+SLEEP = re.compile(r"\b(sleep|sleep_for|sleep_until|usleep|nanosleep)\s*\(|this_thread::(yield)|\bpoll\(nullptr"
+                   r"|\bselect\(\[\], \[\], \[\]|\bfrom (time|asyncio) import .*\bsleep\b")
+
 MAX_FILE_LINES = 400
 MAX_FUNCTION_LINES = 60  # 40 without a reason; those between are reported
 GOOD_FUNCTION_LINES = 40
@@ -120,6 +130,15 @@ def header_problems(path, lines):
         return []
     problems = [] if "#pragma once" in lines else [f"{path}: no #pragma once"]
     return problems + [f"{path}: using namespace in a header" for line in lines if re.match(r"\s*using namespace", line)]
+
+
+def sleep_problems(path, lines):
+    """A test that sleeps is slow on an idle machine and fails on a busy one."""
+    found = [number for number, line in enumerate(lines, 1) if SLEEP.search(line)]
+    if path in SLEEPERS:
+        return [] if found else [f"{path}: does not sleep any more, take it off the list"]
+    return [f"{path}:{number}: a test waits for an event with a deadline, see tests/system/polling.h"
+            for number in found]
 
 
 def functions(lines):

@@ -44,6 +44,10 @@ class Tree(unittest.TestCase):
         folders = CXX_FOLDERS + ("tests",)
         self.expect_none([p for path, lines in cxx_files(folders) for p in rules.header_problems(path, lines)])
 
+    def test_tests_wait_for_events(self):
+        self.expect_none([p for path, lines in files(("tests",)) for p in rules.sleep_problems(path, lines)])
+        self.assertEqual([], [path for path in rules.SLEEPERS if not pathlib.Path(path).exists()])
+
     def test_files_and_functions_fit_the_budget(self):
         for path, lines in cxx_files(CXX_FOLDERS):
             for line in rules.long_functions(path, lines):
@@ -102,6 +106,16 @@ class Rules(unittest.TestCase):
         self.assertEqual([], rules.header_problems("a.h", ["// SPDX", "#pragma once"]))
         self.assertEqual(2, len(rules.header_problems("a.h", ["using namespace std;"])))
         self.assertTrue(rules.licence_problems("a.h", ["#pragma once"]))
+
+    def test_sleeps(self):
+        for call in ("sleep_for", "sleep_until", "usleep", "nanosleep", "time.sleep", "asyncio.sleep"):
+            self.assertEqual(1, len(rules.sleep_problems("tests/system/a.cpp", ["", f"    {call}(x);"])), call)
+        for text in ("std::this_thread::" + "yield();", "from time " + "import monotonic, sleep", "poll" + "(nullptr, 0, 20);"):
+            self.assertTrue(rules.sleep_problems("tests/bench/a.py", [text]), text)
+        for text in ("Without subscribers a channel sleeps.", "poll(ends.data(), 2, 20);", "EXPECT_TRUE(sleeps(feed));"):
+            self.assertEqual([], rules.sleep_problems("tests/system/a.cpp", [text]))
+        self.assertEqual([], rules.sleep_problems("tests/system/polling.h", [f"    {'sleep_for'}(kLookInterval);"]))
+        self.assertTrue(rules.sleep_problems("tests/system/polling.h", ["nothing"]), "the list holds who needs it only")
 
     def test_function_lengths(self):
         text = ["namespace a {", "struct B {", "    int c;", "};", "int f(int a,", "      int b) {", "    return a;", "}",
