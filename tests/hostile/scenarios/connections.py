@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Before any token is shown: HTTP/2 frames and connections."""
 import contextlib
+import dataclasses
 import time
 
 from connection import Closed, Connection
@@ -9,8 +10,10 @@ from scenario import Bounds, Scenario, Setup
 
 OPEN = "/fieldcast.v1.LightField/Open"
 INFO = "/fieldcast.v1.Catalog/GetServerInfo"
+HEALTH = "/grpc.health.v1.Health/Check"
 FLOOD_MIB = 400
 RESET_STREAMS = 120_000
+POURED_MIB = 300  # more than the quota of memory of the server's gRPC, 256 MiB
 MAX_DESCRIPTORS = 64
 IDLE_CONNECTIONS = 80
 
@@ -43,6 +46,22 @@ def rapid_reset(field):
     field.expect("streams were reset", streams >= RESET_STREAMS / 10, f"{streams} on {connections} connections")
 
 
+def endless_requests(field):
+    """Requests of health and of the catalogue that announce 4 GiB and never end, by somebody without a token."""
+    target, part = dataclasses.replace(field.target, token=None), bytes(1 << 14)
+    for path in (HEALTH, INFO):
+        sent = 0
+        with Connection(target) as connection:
+            call = connection.call(path)
+            with contextlib.suppress(Closed):
+                connection.send(call.stream, b"\0\xff\xff\xff\xff", False)
+                while sent < POURED_MIB << 20 and field.has_time() and not call.is_over:
+                    connection.send(call.stream, part, False)
+                    sent += len(part)
+                    connection.pump(0.01)
+            field.expect(f"{path} is cut off", call.is_over, f"after {sent / 2**20:.1f} MiB")
+
+
 def answers(field):
     """Whether a newcomer gets an answer within 8 s."""
     deadline = time.monotonic() + 8.0
@@ -72,6 +91,8 @@ SCENARIOS = [
              Bounds(BY_ENVOY, share=0.2, gap_frames=60.0), Setup(front="envoy")),
     Scenario("rapid-reset-envoy", 2, "120,000 streams opened and reset, through Envoy", rapid_reset,
              Bounds(BY_ENVOY, share=0.2, gap_frames=60.0), Setup(front="envoy")),
+    Scenario("endless-requests-envoy", 1, "requests of 4 GiB without a token, through Envoy", endless_requests,
+             Bounds(BY_ENVOY, share=0.2, gap_frames=60.0), Setup(front="envoy", role="view")),
     Scenario("descriptors", 3, "80 idle connections to a server with 64 descriptors", descriptors_run_out,
              Bounds("connections leave a reserve of descriptors"), Setup(max_descriptors=MAX_DESCRIPTORS)),
     Scenario("descriptors-envoy", 3, "the same, through Envoy", descriptors_run_out, Bounds(BY_ENVOY),
