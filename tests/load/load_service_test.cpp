@@ -24,11 +24,12 @@ Group group_of(const std::string& name, std::uint32_t count, std::uint32_t rows,
 
 class LoadService : public testing::Test {
 protected:
-    LoadResult run(std::vector<Group> groups, const std::function<bool(const LoadProgress&)>& has_enough) {
+    LoadResult run(std::vector<Group> groups, const std::function<bool(const LoadProgress&)>& has_enough,
+                   Seconds ramp = 2s) {
         Scenario scenario;
         scenario.address = "127.0.0.1:" + std::to_string(server_.port());
         scenario.groups = std::move(groups);
-        scenario.ramp = 2s;
+        scenario.ramp = ramp;
         scenario.threads = 2;
         return test::run_until(scenario, has_enough);
     }
@@ -62,7 +63,8 @@ TEST_F(LoadService, MixedClientsAllGetTheirFramesUndamaged) {
 }
 
 TEST_F(LoadService, TwoHundredClientsGetEqualShares) {
-    const LoadResult result = run({group_of("crowd", 200, 3, 3)}, test::frames_for_everybody(20));
+    // Whoever is not yet connected when the window begins has a smaller share, which is not what this is about.
+    const LoadResult result = run({group_of("crowd", 200, 3, 3)}, test::frames_for_everybody(20), 5s);
     const GroupResult& crowd = result.groups.at(0);
     EXPECT_EQ(crowd.tally.failed + crowd.tally.refused + crowd.tally.lost, 0U);
     EXPECT_EQ(crowd.client_fps.size(), 200U);

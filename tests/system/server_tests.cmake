@@ -141,7 +141,7 @@ if(NOT FIELDCAST_SANITIZE MATCHES thread)
 endif()
 fieldcast_test(channels_process_test LABELS gpu system TIMEOUT 600
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/channels_process_test.cpp
-    DEPENDS running_server nlohmann_json::nlohmann_json)
+    DEPENDS fieldcast_base running_server nlohmann_json::nlohmann_json)
 add_dependencies(channels_process_test fieldcast-server fieldcast-client)
 target_compile_definitions(channels_process_test PRIVATE
     FIELDCAST_SERVER="$<TARGET_FILE:fieldcast-server>" FIELDCAST_CLIENT="$<TARGET_FILE:fieldcast-client>")
