@@ -121,12 +121,12 @@ class Strict(unittest.TestCase):
         raw, _ = self.play(VIEWS, grid=grid, codecs=prefer([frames.COLOUR], RAW), keeps_key_frames=False,
                            chunk_bytes=16 << 10)
         self.expect_equal(zstd, raw)
-        lossy, _ = self.play(VIEWS, grid=grid, codecs=prefer([frames.COLOUR], JPEG, quality=95), keeps_key_frames=False)
+        lossy, _ = self.play(VIEWS, grid=grid, codecs=prefer([frames.COLOUR], JPEG, quality=90), keeps_key_frames=False)
         for time_ns, done in lossy.items():
             self.assertIn((strip.JPEG, 0), done.codings)
             for part, twin in zip(done.parts, raw[time_ns].parts):
                 apart = statistics.fmean(abs(a - b) for a, b in zip(part.pixels, twin.pixels))
-                self.assertLess(apart, 4, "steps of the tables at quality 95 are 3 to 11")
+                self.assertLess(apart, 8, "a quarter of the largest step of the tables at quality 90, which is 31")
 
     def test_views_are_those_of_our_client(self):
         ours, _ = self.play(VIEWS)
@@ -184,7 +184,7 @@ class Strict(unittest.TestCase):
     def test_light_in_one_plane_and_as_jpeg(self):
         both, _ = self.play(SCENE)
         total, _ = self.play(SCENE, planes=v1.PLANE_SET_TOTAL_LIGHT)
-        lossy, _ = self.play(SCENE, codecs=prefer([frames.DIFFUSE, frames.SPECULAR], JPEG, quality=95),
+        lossy, _ = self.play(SCENE, codecs=prefer([frames.DIFFUSE, frames.SPECULAR], JPEG, quality=90),
                              keeps_key_frames=False)
         for time_ns, done in both.items():
             kinds = [list(map(strip.unpack_light, words(done.find(s)))) for s in (frames.DIFFUSE, frames.SPECULAR)]

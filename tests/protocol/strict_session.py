@@ -14,6 +14,8 @@ from fieldcast.v1 import light_field_pb2 as v1
 OPEN = "/fieldcast.v1.LightField/Open"
 PATIENCE_S = 60.0  # for frames of a software device on a busy machine
 
+QUALITIES = (0, 10, 25, 40, 55, 75, 90)  # 0 of lossless codecs; 75 is the channel's own, too
+
 
 def check_configured(asked, configured):
     """What holds for every Configured, and for the planes of channels with one source."""
@@ -27,6 +29,7 @@ def check_configured(asked, configured):
     require(0 < configured.view_set.fovy_rad < math.pi, "Configured: field of view")
     named = {preference.semantic: list(preference.codecs) for preference in asked.codecs}
     for plane in configured.planes:
+        require(plane.quality in QUALITIES, f"Configured: quality {plane.quality}")
         require(plane.codec in (named.get(plane.semantic) or [2, 1]), "Configured: a codec that was not asked for")
         require(1 <= plane.width_px <= 16384 and 1 <= plane.height_px <= 16384, "Configured: size of a plane")
 
