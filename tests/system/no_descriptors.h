@@ -6,6 +6,14 @@
 
 namespace fieldcast::test {
 
+/// UndefinedBehaviorSanitizer opens a pipe to look at an object's type, and takes every object for none without one. Tests
+/// in which this process lacks descriptors skip there; the process tests, whose server lacks them, do not.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kNeedsDescriptors = true;
+#else
+inline constexpr bool kNeedsDescriptors = false;
+#endif
+
 /// Lets this process open no further descriptor until its end. Those that are open stay.
 class NoDescriptors {
 public:

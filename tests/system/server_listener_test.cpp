@@ -158,6 +158,9 @@ TEST(Acceptor, LetsTheServersOwnQuestionInWhenItIsFull) {
 }
 
 TEST(Acceptor, ListensAgainWhenThereAreDescriptorsAgain) {
+    if (test::kNeedsDescriptors) {
+        GTEST_SKIP() << "the sanitizer needs descriptors of its own";
+    }
     const ListeningSockets sockets(kAnyPort, 10s);
     Taken taken;
     const Acceptor acceptor(sockets, 8, taken.take());

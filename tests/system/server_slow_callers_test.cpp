@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What callers of the HTTP edge cannot do to others, or to the end of the process: with silence, with slowness, with
 // numbers.
+#include "no_descriptors.h"
 #include "web_fixture.h"
 
 #include <atomic>
@@ -202,6 +203,9 @@ double processor_time_s() {
 }
 
 TEST_F(SlowCallers, AnswersWhileDescriptorsHaveRunOut) {
+    if (test::kNeedsDescriptors) {
+        GTEST_SKIP() << "the sanitizer needs descriptors of its own";
+    }
     auto opens = routes();
     std::atomic<bool> could_open = false;
     opens[0].get = [&](const Request&) {
@@ -232,6 +236,9 @@ TEST_F(SlowCallers, AnswersWhileDescriptorsHaveRunOut) {
 }
 
 TEST_F(SlowCallers, ComesBackAfterDescriptorsHaveRunOut) {
+    if (test::kNeedsDescriptors) {
+        GTEST_SKIP() << "the sanitizer needs descriptors of its own";
+    }
     auto endpoint = std::make_optional<Endpoint>(in_the_open(), gate_, routes());
     EarlyCaller caller;
     {
