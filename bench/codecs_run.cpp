@@ -19,38 +19,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kLight = "light";
-constexpr const char* kTotalLight = "total light";
 constexpr const char* kView = "view";
-const Coding kCoarseNormals{"zstd, oct2x8", {codec::CodecId::kZstdFiltered, 0}};
+const Coding kCoarseNormals{"zstd, oct2x8", {Codec::kZstdFiltered, 0}};
 
-const char* name_of(PlaneSemantic semantic) {
-    switch (semantic) {
-    case PlaneSemantic::kDiffuse:
-        return "diffuse";
-    case PlaneSemantic::kSpecular:
-        return "specular";
-    case PlaneSemantic::kDepth:
-        return "depth";
-    case PlaneSemantic::kNormal:
-        return "normal";
-    case PlaneSemantic::kId:
-        return "id";
-    case PlaneSemantic::kMaterial:
-        return "material";
-    case PlaneSemantic::kColour:
-    case PlaneSemantic::kInverseDepth:
-    case PlaneSemantic::kResidualColour:
-    case PlaneSemantic::kResidualInverseDepth:
-        break;
-    case PlaneSemantic::kTotalLight:
-        return kTotalLight;
-    }
-    return kView;
+std::string name_of(PlaneSemantic semantic) {
+    return semantic == PlaneSemantic::kColour ? kView : std::string(word_of(semantic));
 }
 
 /// Whether planes of a source frame can be coded so, besides views.
 bool is_for_planes(const Coding& coding) {
-    return codec::fits(coding.encoding.codec, PlaneFormat::kR11G11B10F);
+    return carries(coding.encoding.codec, PlaneFormat::kR11G11B10F);
 }
 
 /// The corners of a grid, a view within, and the one that views are predicted from.
@@ -110,7 +88,7 @@ CodecsRun::CodecsRun(const gpu::Device& device, LightFieldScene& scene, const Co
       planes_(device), surfaces_(device, scene.gpu_scene()), uncoded_(device, scene.gpu_scene()),
       coarse_(device, scene.gpu_scene()) {
     for (const Coding& coding : codings_) {
-        const bool loses_light = codec::is_lossy(coding.encoding.codec) && is_for_planes(coding);
+        const bool loses_light = is_lossy(coding.encoding.codec) && is_for_planes(coding);
         const bool loses_kinds = loses_light || coding.name == "zstd"; // one plane of light is a loss by itself
         const auto make_renderer = [&] { return std::make_unique<render::GridRenderer>(device, scene.gpu_scene()); };
         renderers_.push_back(loses_light ? make_renderer() : nullptr);
@@ -156,7 +134,7 @@ SourceFrame CodecsRun::measure_planes(const SourceFrame& frame, const Coding& co
     SourceFrame decoded = frame;
     CodedPlane light;
     for (Plane& plane : decoded.planes) {
-        if (!codec::fits(coding.encoding.codec, plane.format)) {
+        if (!carries(coding.encoding.codec, plane.format)) {
             continue;
         }
         CodedPlane coded = code_plane(plane, coding, {.before = before_.find(plane.semantic)},
@@ -194,10 +172,10 @@ void CodecsRun::measure_total_light(const SourceFrame& frame, const Views& uncod
         SourceFrame received = frame;
         std::erase_if(received.planes, [](const Plane& plane) { return is_illumination(plane.semantic); });
         CodedPlane coded = code_plane(light, codings_[i], {}, frame.header.settings.exposure);
-        samples(kTotalLight, codings_[i]).add(coded);
+        samples(name_of(PlaneSemantic::kTotalLight), codings_[i]).add(coded);
         received.planes.push_back(std::move(coded.decoded));
         if (merged_[i]) {
-            compare(make_views(*merged_[i], received), uncoded, samples(kTotalLight, codings_[i]));
+            compare(make_views(*merged_[i], received), uncoded, samples(name_of(PlaneSemantic::kTotalLight), codings_[i]));
         }
     }
 }
@@ -218,7 +196,7 @@ void CodecsRun::measure_views(const Views& views, const Coding& coding) {
                                              views.header.settings.exposure);
         Samples& view = samples(kView, coding);
         view.add(coded);
-        if (codec::is_lossy(coding.encoding.codec)) {
+        if (is_lossy(coding.encoding.codec)) {
             view.ssim.push_back(image::ssim(image::display_image(coded.decoded), image::display_image(image)));
         }
     }
@@ -275,7 +253,13 @@ Json CodecsRun::result() const {
               {"coarse_normals_deg", {{"mean", mean_angle_deg_}, {"max", largest_angle_deg_}}}};
     std::vector<Coding> codings = codings_;
     codings.push_back(kCoarseNormals);
-    for (const char* part : {"diffuse", "specular", kLight, kTotalLight, "depth", "normal", "id", "material", kView}) {
+    std::vector<std::string> parts;
+    for (const PlaneSemantic semantic : render::kSourceSemantics) {
+        parts.push_back(name_of(semantic));
+    }
+    parts.insert(parts.begin() + 2, {kLight, name_of(PlaneSemantic::kTotalLight)});
+    parts.emplace_back(kView);
+    for (const std::string& part : parts) {
         for (const Coding& coding : codings) {
             const auto found = samples_.find({part, coding.name});
             if (found != samples_.end()) {

@@ -18,15 +18,25 @@ double processor_ms() {
 } // namespace
 
 std::vector<Coding> all_codings(const std::vector<std::uint32_t>& qualities) {
-    std::vector<Coding> codings{{"raw", {codec::CodecId::kRaw, 0}},
-                                {"zstd", {codec::CodecId::kZstdFiltered, 0}},
-                                {"zstd, key frame", {codec::CodecId::kZstdFiltered, 0}, true}};
+    std::vector<Coding> codings;
+    for (const Codec codec : kAll<Codec>) {
+        if (!is_lossy(codec)) {
+            codings.push_back({std::string(word_of(codec)), {codec, 0}});
+        }
+    }
+    codings.push_back({"zstd, key frame", {Codec::kZstdFiltered, 0}, true});
     for (const std::uint32_t quality : qualities) {
-        const std::string text = std::to_string(quality);
-        const auto number = static_cast<std::uint8_t>(quality);
-        codings.push_back({"jpeg " + text, {codec::CodecId::kJpeg, number}});
-        codings.push_back({"h264 " + text, {codec::CodecId::kH264, number}, false, true});
-        codings.push_back({"h264 " + text + " alone", {codec::CodecId::kH264, number}});
+        for (const Codec codec : kAll<Codec>) {
+            if (is_lossy(codec)) {
+                const std::string name = std::string(word_of(codec)) + " " + std::to_string(quality);
+                const codec::Encoding encoding{codec, static_cast<std::uint8_t>(quality)};
+                const bool predicts_views = row_of(codec).predicts_views;
+                codings.push_back({name, encoding, false, predicts_views});
+                if (predicts_views) {
+                    codings.push_back({name + " alone", encoding});
+                }
+            }
+        }
     }
     return codings;
 }
@@ -60,7 +70,7 @@ CodedPlane code_plane(const Plane& plane, const Coding& coding, const Neighbours
     }
     coded.decode_ms = processor_ms() - zeroed_ms;
     coded.encode_ms = encoded_ms - begin_ms;
-    if (!codec::is_lossy(coding.encoding.codec) && coded.decoded != plane) {
+    if (!is_lossy(coding.encoding.codec) && coded.decoded != plane) {
         throw std::logic_error(coding.name + ": lossless, but pixels changed");
     }
     return coded;

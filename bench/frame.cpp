@@ -36,7 +36,7 @@ struct FrameOptions {
     double spacing_m = 0.0;
     double exposure = 0.0;
     bool guard_band = true;
-    std::string preset = "ours";
+    std::string preset = "default";
     std::string holes; ///< empty: the preset's
     RenderSettings settings; ///< samples, bounces and next event estimation count
 };

@@ -2,6 +2,7 @@
 #include "bench/frame_page.h"
 
 #include "bench/result_page.h"
+#include "core/lightfield/vocabulary.h"
 #include "core/report/chart.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ std::string percent_text(const Json& share) {
 } // namespace
 
 std::string kind_of_stage(const std::string& stage) {
-    const auto contains = [&](const char* part) { return stage.find(part) != std::string::npos; };
+    const auto contains = [&](std::string_view part) { return stage.find(part) != std::string::npos; };
     if (stage == "holes") {
         return "hole paths";
     }
@@ -89,7 +90,11 @@ std::string kind_of_stage(const std::string& stage) {
     if (contains("trace")) {
         return "path tracing";
     }
-    if (contains("temporal") || contains("denoise") || contains("svgf") || contains("bmfr") || stage == "pack") {
+    const bool is_denoiser = std::ranges::any_of(kAll<Denoiser>, [&](Denoiser denoiser) {
+        const std::string_view word = word_of(denoiser); // stages are named after it: "svgf_atrous" of svgf and svgf+
+        return contains(word.substr(0, word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789")));
+    });
+    if (contains("temporal") || contains("denoise") || is_denoiser || stage == "pack") {
         return "accumulate, denoise";
     }
     if (contains("reproject") || stage == "interleave" || stage == "shade_views") {

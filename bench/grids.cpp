@@ -19,7 +19,7 @@ namespace {
 struct GridsOptions {
     ProtocolOptions protocol;
     std::vector<std::string> grids{"3x3", "4x4", "5x5", "6x6"};
-    std::string preset = "ours";
+    std::string preset = "default";
     std::string json;
     std::string csv;
     std::string html;

@@ -19,7 +19,7 @@ struct QualityOptions {
     std::string csv;
     std::string html;
     std::string out;
-    std::vector<std::string> presets{"reprojected", "svgf", "bmfr", "ours"};
+    std::vector<std::string> presets{"reprojected", "svgf", "bmfr", "default"};
     double exposure = 0.0;
     double indirect_clamp = -1.0; ///< < 0: the presets'
     bool renders_scored_views_only = false;

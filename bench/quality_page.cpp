@@ -22,9 +22,9 @@ constexpr std::uint32_t kCropWidth = 320;
 constexpr std::uint32_t kCropHeight = 180;
 constexpr float kLargestError = 0.25F; // of error maps
 
-/// The row to look at: "ours", or the last one.
+/// The row to look at: "default", or the last one.
 std::string highlighted_row(const Rows& rows) {
-    const auto ours = std::ranges::find(rows, "ours", [](const auto& row) { return row.first; });
+    const auto ours = std::ranges::find(rows, "default", [](const auto& row) { return row.first; });
     return ours != rows.end() ? ours->first : rows.back().first;
 }
 

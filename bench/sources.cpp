@@ -19,7 +19,7 @@ namespace {
 struct SourcesOptions {
     ProtocolOptions protocol;
     std::vector<std::string> configurations{"middle", "top-left", "diagonal", "triangle", "corners"};
-    std::string preset = "ours";
+    std::string preset = "default";
     std::string json;
     std::string csv;
     std::string html;

@@ -64,7 +64,7 @@ std::string numbered(const std::string& stem, std::size_t i) {
     return stem + "_" + std::to_string(i);
 }
 
-const Coding kLossless{"zstd", {codec::CodecId::kZstdFiltered, 0}};
+const Coding kLossless{"zstd", {Codec::kZstdFiltered, 0}};
 
 } // namespace
 
@@ -111,7 +111,7 @@ void WarpRun::measure() {
     std::vector<Coding> codings{kLossless};
     for (const std::uint32_t quality : settings_.qualities) {
         codings.push_back(
-            {"jpeg " + std::to_string(quality), {codec::CodecId::kJpeg, static_cast<std::uint8_t>(quality)}});
+            {"jpeg " + std::to_string(quality), {Codec::kJpeg, static_cast<std::uint8_t>(quality)}});
     }
     write_pictures(kFinished, finished);
     measure_scene(frame);
@@ -156,7 +156,7 @@ void WarpRun::measure_warp(const SourceFrame& frame, const Views& finished, cons
             plane.semantic == PlaneSemantic::kColour || plane.semantic == PlaneSemantic::kInverseDepth;
         const bool is_sent = is_of_source || (has_residual && is_residual(plane.semantic));
         if (is_sent) {
-            const bool fits = codec::fits(coding.encoding.codec, plane.format);
+            const bool fits = carries(coding.encoding.codec, plane.format);
             CodedPlane coded = code_plane(plane, fits ? coding : kLossless, {}, 1.0F);
             bytes += coded.bytes;
             decoded.planes.push_back(std::move(coded.decoded));

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load_options.h"
+#include "client/flag_report.h"
 
 #include "core/base/error.h"
-#include "core/base/flag_problem.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
-#include <sstream>
 
 namespace fieldcast::client {
 namespace {
@@ -178,16 +177,8 @@ LoadInvocation read_load_options(int argc, const char* const* argv) {
         options.scenario = read_text(text);
         return {options, "", 0};
     } catch (const CLI::ParseError& error) {
-        std::ostringstream out;
-        if (app.exit(error, out, out) == 0) { // --help, --version
-            return {std::nullopt, out.str(), 0};
-        }
-        const auto type_of = [&](const std::string& flag) {
-            const CLI::Option* const option = app.get_option_no_throw(flag);
-            return option == nullptr ? std::string() : option->get_type_name();
-        };
-        return {std::nullopt,
-                flag_problem(error.get_name(), error.what(), type_of) + "\nfieldcast-load --help tells the flags\n", 2};
+        const FlagReport report = report_of(app, error);
+        return {std::nullopt, report.text, report.exit_code};
     } catch (const UserError& error) {
         return {std::nullopt, std::string(error.what()) + "\n", 2};
     }

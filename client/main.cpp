@@ -54,13 +54,13 @@ client::play::PlayResult play_or_fall_back(client::Options& options, const Inter
         }
         log::warn("no device to make views, taking finished ones", {{"reason", error.what()}});
     }
-    options.play.wish.mode = client::net::Mode::kViews;
-    if (options.play.wish.adaptation) {
-        options.play.wish.adaptation->allows_scene = false;
+    options.play.request.mode = DeliveryMode::kViews;
+    if (options.play.request.adaptation) {
+        options.play.request.adaptation->allows_scene = false;
     }
     for (client::play::Change& change : options.play.changes) {
-        change.wish.mode = client::net::Mode::kViews;
-        change.wish.adaptation = options.play.wish.adaptation;
+        change.request.mode = DeliveryMode::kViews;
+        change.request.adaptation = options.play.request.adaptation;
     }
     return client::play::play(options.play, on_progress, interrupt.token());
 }

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/options.h"
+#include "client/flag_report.h"
 #include "client/play/scene_cache.h"
 #include "client/setting_text.h"
 
 #include "core/base/bearer_token.h"
-#include "core/base/flag_problem.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <numbers>
-#include <sstream>
 
 namespace fieldcast::client {
 namespace {
@@ -38,60 +36,49 @@ Exit codes: 0 all frames shown, 1 the server or this machine failed, 2 what was 
 
 /// What the flags say, before it is checked.
 struct FlagText {
-    std::string grid = "4x4";
-    std::string size;
-    std::vector<std::string> modes{"views"};
-    std::string planes = "g-buffer";
-    std::vector<std::string> codecs{"zstd"};
+    std::vector<std::pair<std::string, std::string>> request; ///< keys of net::request_setters() and values
+    std::vector<std::string> modes;
+    std::vector<std::string> codecs;
     std::vector<std::string> changes;
     std::string adaptation;
     bool adapts = false;
     std::string save = "last";
     std::vector<std::string> write{"quilt", "views"};
-    std::string anchor = "lattice";
     std::string cache;
     double patience_s = 30.0;
-    std::uint32_t quality = 0;
-    std::string max_fps = "0";
-    float fov_deg = 0.0F;
-    float spacing_m = -1.0F;
-    float convergence_m = -1.0F;
     bool no_reconnect = false;
     bool no_residual = false;
-    std::uint32_t normal_bits = 16;
     std::string steer;
     bool steers_now = false;
 };
 
+/// A flag whose value is a setting of the request.
+CLI::Option* add_setting(CLI::App& app, const std::string& flag, const std::string& help, FlagText& text) {
+    const auto note = [&text, key = flag.substr(2)](const std::string& value) { text.request.emplace_back(key, value); };
+    return app.add_option_function<std::string>(flag, note, help);
+}
+
 void add_view_flags(CLI::App& app, FlagText& text) {
-    app.add_option("--grid", text.grid, "Views, ROWSxCOLS, at most 72 in all")->capture_default_str();
-    app.add_option("--size", text.size, "Pixels of one view, WIDTHxHEIGHT; without it: those of the source");
-    app.add_option("--fov", text.fov_deg, "Vertical field of view, degrees; without it: the source's")
-        ->check(CLI::Range(0.01F, 179.0F));
-    app.add_option("--spacing", text.spacing_m, "Metres between neighbouring views; without it: the channel's")
-        ->check(CLI::Range(0.0F, 1000.0F));
-    app.add_option("--convergence", text.convergence_m, "Depth of zero disparity, metres; 0: parallel cameras")
-        ->check(CLI::NonNegativeNumber);
-    app.add_option("--anchor", text.anchor, "Where the source is in the grid: lattice or centre")
-        ->check(CLI::IsMember({"lattice", "centre"}))
-        ->capture_default_str();
-    app.add_option("--max-fps", text.max_fps, "Frames per second at most, 0.1 or more; 0: the channel's")
-        ->capture_default_str();
+    add_setting(app, "--grid", "Views, ROWSxCOLS, at most 72 in all", text)->default_str("4x4");
+    add_setting(app, "--size", "Pixels of one view, WIDTHxHEIGHT; without it: those of the source", text);
+    add_setting(app, "--fov", "Vertical field of view, degrees; without it: the source's", text);
+    add_setting(app, "--spacing", "Metres between neighbouring views; without it: the channel's", text);
+    add_setting(app, "--convergence", "Depth of zero disparity, metres; 0: parallel cameras", text);
+    add_setting(app, "--anchor", "Where the source is in the grid: lattice or centre", text)->default_str("lattice");
+    add_setting(app, "--max-fps", "Frames per second at most, 0.1 or more; 0: the channel's", text)->default_str("0");
 }
 
 void add_plane_flags(CLI::App& app, FlagText& text) {
-    app.add_option(
-           "--planes", text.planes,
-           "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
-           "total-light: the same, with one plane of illumination instead of two")
-        ->check(CLI::IsMember({"g-buffer", "illumination", "total-light"}))
-        ->capture_default_str();
-    app.add_option(
-           "--normal-bits", text.normal_bits,
-           "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a fraction of "
-           "the bytes, and turn normals by less than 1 degree")
-        ->check(CLI::IsMember({8U, 16U}))
-        ->capture_default_str();
+    add_setting(app, "--planes",
+                "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
+                "total-light: the same, with one plane of illumination instead of two",
+                text)
+        ->default_str("g-buffer");
+    add_setting(app, "--normal-bits",
+                "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a "
+                "fraction of the bytes, and turn normals by less than 1 degree",
+                text)
+        ->default_str("16");
 }
 
 void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
@@ -100,18 +87,17 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
            "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
            "device; warp: this machine does, without the scene; scene,views or warp,views: if there is a device")
         ->delimiter(',')
-        ->check(CLI::IsMember({"views", "scene", "warp"}))
-        ->capture_default_str();
+        ->check(CLI::IsMember(words<DeliveryMode>()))
+        ->default_str("views");
     add_plane_flags(app, text);
     app.add_option(
            "--codec", text.codecs,
            "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
            "raw, jpeg; of views: h264")
         ->delimiter(',')
-        ->check(CLI::IsMember({"zstd", "raw", "jpeg", "h264"}))
-        ->capture_default_str();
-    app.add_option("--quality", text.quality, "Of lossy codecs, 1 to 100; without it: the server's choice")
-        ->check(CLI::Range(1, 100));
+        ->check(CLI::IsMember(words<Codec>()))
+        ->default_str("zstd");
+    add_setting(app, "--quality", "Of lossy codecs, 1 to 100; without it: the server's choice", text);
     app.add_flag("--no-residual", text.no_residual, "Of mode warp: without what only the corners of the grid see");
     app.add_option("--adapt", text.adaptation,
                    "Let the server send less while the connection carries less. Bounds as in "
@@ -127,7 +113,7 @@ void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
     app.add_option("--visibility", play.visibility,
-                   "Of mode scene, how it is found what views see: rays, raster, or auto: what is faster")
+                   "Of mode scene, visibility method for views: rays, raster, or auto (the faster one)")
         ->check(CLI::IsMember({"auto", "rays", "raster"}))
         ->capture_default_str();
     app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
@@ -155,7 +141,7 @@ void add_access_flags(CLI::App& app, net::Access& access) {
 void add_server_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option("--server", play.server.address, "HOST:PORT or https://HOST:PORT")->capture_default_str();
     add_access_flags(app, play.server.access);
-    app.add_option("--channel", play.wish.channel, "Name of the channel; without it: the server's first");
+    app.add_option("--channel", play.request.channel, "Name of the channel; without it: the server's first");
     app.add_flag("--no-reconnect", text.no_reconnect, "Fail when the server cannot be reached or goes away");
     app.add_option("--patience", text.patience_s, "Seconds without any success after which to give up")
         ->check(CLI::Range(0.0, 1e6))
@@ -211,32 +197,28 @@ void read_access(play::ServerOptions& server) {
 /// Each builds on the one before.
 void read_changes(const FlagText& text, play::PlayOptions& play) {
     for (const std::string& change : text.changes) {
-        play.changes.push_back(read_change(change, play.changes.empty() ? play.wish : play.changes.back().wish));
+        play.changes.push_back(read_change(change, play.changes.empty() ? play.request : play.changes.back().request));
     }
 }
 
 void read_text(const FlagText& text, Options& options) {
     read_access(options.play.server);
-    net::Wish& wish = options.play.wish;
-    set_grid("--grid", text.grid, wish);
-    if (!text.size.empty()) {
-        set_size("--size", text.size, wish);
+    net::Request& request = options.play.request;
+    for (const auto& [key, value] : text.request) {
+        set_in_request(key, value, request);
     }
-    wish.mode = mode_of("--mode", text.modes.front());
-    wish.has_residual = !text.no_residual;
-    wish.has_coarse_normals = text.normal_bits == 8;
-    options.falls_back_to_views = wish.mode != net::Mode::kViews && contains(text.modes, "views");
-    wish.planes = planes_of("--planes", text.planes);
-    wish.quality = static_cast<std::uint8_t>(text.quality);
-    wish.max_frames_per_second = rate_bound("--max-fps", text.max_fps);
-    wish.codecs.clear();
-    for (const std::string& word : text.codecs) {
-        wish.codecs.push_back(codec_of("--codec", word));
+    if (!text.modes.empty()) {
+        set_in_request("mode", text.modes.front(), request);
     }
-    wish.anchor = text.anchor == "centre" ? Anchor::kCentre : Anchor::kLattice;
-    wish.fovy_rad = text.fov_deg * std::numbers::pi_v<float> / 180.0F;
-    wish.spacing_m = text.spacing_m >= 0.0F ? std::optional(text.spacing_m) : std::nullopt;
-    wish.convergence_m = text.convergence_m >= 0.0F ? std::optional(text.convergence_m) : std::nullopt;
+    request.has_residual = !text.no_residual;
+    options.falls_back_to_views = is_made_by_client(request.mode) && contains(text.modes, "views");
+    if (!text.codecs.empty()) {
+        std::string codecs;
+        for (const std::string& word : text.codecs) {
+            codecs += (codecs.empty() ? "" : "+") + word;
+        }
+        set_in_request("codec", codecs, request);
+    }
     options.play.server.reconnects = !text.no_reconnect;
     options.play.server.patience = std::chrono::milliseconds(static_cast<std::int64_t>(text.patience_s * 1000.0));
     options.play.save = text.save == "all"    ? play::Save::kAll
@@ -247,10 +229,10 @@ void read_text(const FlagText& text, Options& options) {
         throw UserError(*problem);
     }
     if (text.adapts) {
-        wish.adaptation = read_adaptation(text.adaptation);
+        request.adaptation = read_adaptation(text.adaptation);
     }
     read_changes(text, options.play);
-    if (options.play.products.source_exr && wish.mode != net::Mode::kScene) {
+    if (options.play.products.source_exr && !row_of(request.mode).needs_scene) {
         throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
     }
     if (!text.steer.empty()) {
@@ -280,16 +262,8 @@ Invocation read_options(int argc, const char* const* argv) {
         read_text(text, options);
         return {options, "", 0};
     } catch (const CLI::ParseError& error) {
-        std::ostringstream out;
-        if (app.exit(error, out, out) == 0) { // --help, --version
-            return {std::nullopt, out.str(), 0};
-        }
-        const auto type_of = [&](const std::string& flag) {
-            const CLI::Option* const option = app.get_option_no_throw(flag);
-            return option == nullptr ? std::string() : option->get_type_name();
-        };
-        return {std::nullopt,
-                flag_problem(error.get_name(), error.what(), type_of) + "\nfieldcast-client --help tells the flags\n", 2};
+        const FlagReport report = report_of(app, error);
+        return {std::nullopt, report.text, report.exit_code};
     } catch (const UserError& error) {
         return {std::nullopt, std::string(error.what()) + "\n", 2};
     }

@@ -9,21 +9,15 @@
 namespace fieldcast::client {
 
 /// Reads "WHEN:KEY=VALUE,KEY=VALUE…" on top of what was asked for before. WHEN is a time since the stream was granted
-/// ("3s", "500ms") or a number of frames that have come ("20f"). Keys are flags of the command line without their
-/// dashes: grid, size, spacing, convergence, fov, anchor, mode, planes, codec (several with +), quality, max-fps.
-/// Throws UserError that names the flag and the key.
-play::Change read_change(const std::string& text, const net::Wish& before);
+/// ("3s", "500ms") or a number of frames that have come ("20f"). Keys are those of
+/// net::request_setters(). Throws UserError that names the flag and the key.
+play::Change read_change(const std::string& text, const net::Request& before);
 
-/// Reads "KEY=VALUE,KEY=VALUE…": what the server may change by itself. Keys: jpeg (on, off), quality, fps, height, grid
-/// (the least of each; 0 or 0x0: no change of that kind), scene (on, off), delay (ms). Throws UserError.
-net::AdaptationWish read_adaptation(const std::string& text);
+/// Reads "KEY=VALUE,KEY=VALUE…": what the server may change by itself. Keys are those of
+/// net::adaptation_setters(). Throws UserError.
+net::AdaptationBounds read_adaptation(const std::string& text);
 
-/// The same values as the flags take. Throw UserError, which begins with `what`.
-void set_grid(const std::string& what, const std::string& text, net::Wish& wish);
-void set_size(const std::string& what, const std::string& text, net::Wish& wish);
-float rate_bound(const std::string& what, const std::string& text); ///< frames per second; 0: no bound
-net::PlaneWish planes_of(const std::string& what, const std::string& word);
-net::Mode mode_of(const std::string& what, const std::string& word);
-codec::CodecId codec_of(const std::string& what, const std::string& word);
+/// A flag of a request, by its name without the dashes. Throws UserError that names flag and value.
+void set_in_request(const std::string& key, const std::string& value, net::Request& request);
 
 } // namespace fieldcast::client

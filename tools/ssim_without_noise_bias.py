@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far SSIM* (core/image/metrics.h, ssim_without_noise) is off with the noise of given references.
 
-    ./fieldcast bench quality --scene sponza --size 640x360 --frames 29 --spp 64 --scored-views --presets ours --out q
+    ./fieldcast bench quality --scene sponza --size 640x360 --frames 29 --spp 64 --scored-views --presets default --out q
     ./fieldcast bench flip q    # installs the Python packages
-    .cache/bench-python/bin/python tools/ssim_without_noise_bias.py q/quality.json q/ours/frame29_r2_c3.exr \
+    .cache/bench-python/bin/python tools/ssim_without_noise_bias.py q/quality.json q/default/frame29_r2_c3.exr \
         .cache/references/SCENE/640x360/frame29_row0_col2_halves
 
 The picture itself is taken for the truth. Two noisy halves are made from it with the difference of the references' halves,

@@ -2,6 +2,7 @@
 #include "bench/fanout/receivers.h"
 
 #include "core/base/guarded.h"
+#include "core/wire/convert.h"
 
 #include "fieldcast/v1/light_field.pb.h"
 
@@ -44,14 +45,18 @@ v1::ClientMessage what_there_is() {
     v1::ClientMessage message;
     v1::Configure& wanted = *message.mutable_configure();
     wanted.set_request_id(1);
-    wanted.add_modes(v1::DELIVERY_MODE_VIEWS);
-    wanted.add_modes(v1::DELIVERY_MODE_SCENE);
-    for (const v1::PlaneSemantic semantic :
-         {v1::PLANE_SEMANTIC_COLOUR, v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR}) {
+    for (const DeliveryMode mode : kAll<DeliveryMode>) {
+        wanted.add_modes(wire::to_proto(mode));
+    }
+    for (const PlaneSemantic semantic : kAll<PlaneSemantic>) {
+        if (!is_picture(semantic)) {
+            continue;
+        }
         v1::CodecPreference& preference = *wanted.add_codecs();
-        preference.set_semantic(semantic);
-        for (const v1::Codec codec : {v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW, v1::CODEC_JPEG, v1::CODEC_H264}) {
-            preference.add_codecs(codec);
+        preference.set_semantic(wire::to_proto(semantic));
+        preference.add_codecs(v1::CODEC_ZSTD_FILTERED); // of channels that encode what they are asked for
+        for (const Codec codec : kAll<Codec>) {
+            preference.add_codecs(wire::to_proto(codec));
         }
     }
     return message;

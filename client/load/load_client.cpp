@@ -87,7 +87,7 @@ void LoadClient::open(TimePoint now) {
     leaves_at_ = group.stay > 0s ? std::optional(now + rounded(spread(group.stay))) : std::nullopt;
     try {
         connection_.emplace(all_.scenario->address, all_.scenario->access);
-        session_.emplace(*connection_, group.wish, *all_.pool, std::move(options));
+        session_.emplace(*connection_, group.request, *all_.pool, std::move(options));
     } catch (const UserError& error) { // files of certificates or tokens may come and go
         add_loss(error.what());
         close(now);

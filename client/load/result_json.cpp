@@ -20,9 +20,9 @@ Json to_json(const LatencyHistogram& latencies) {
 Json to_json(const Group& group) {
     return {{"name", group.name},
             {"clients", group.count},
-            {"mode", name_of(group.wish.mode)},
-            {"grid", std::to_string(group.wish.rows) + "x" + std::to_string(group.wish.cols)},
-            {"size", std::to_string(group.wish.width_px) + "x" + std::to_string(group.wish.height_px)},
+            {"mode", word_of(group.request.mode)},
+            {"grid", std::to_string(group.request.rows) + "x" + std::to_string(group.request.cols)},
+            {"size", std::to_string(group.request.width_px) + "x" + std::to_string(group.request.height_px)},
             {"decoding", name_of(group.decoding)},
             {"due_fps", group.due_fps},
             {"reads_kbit_per_second", group.max_bytes_per_second * 8.0 / 1000.0},

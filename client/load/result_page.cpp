@@ -50,8 +50,8 @@ Markup group_table(const LoadResult& result) {
         const Tally& tally = group.tally;
         const double megabytes = static_cast<double>(tally.bytes) * 1e-6 / std::max(result.seconds, 1e-9);
         table.rows.push_back({group.group.name, std::to_string(group.group.count),
-                              std::string(name_of(group.group.wish.mode)),
-                              std::to_string(group.group.wish.rows) + "×" + std::to_string(group.group.wish.cols),
+                              std::string(word_of(group.group.request.mode)),
+                              std::to_string(group.group.request.rows) + "×" + std::to_string(group.group.request.cols),
                               std::to_string(tally.frames), fixed(group.mean_fps(), 2), fixed(group.least_fps(), 2),
                               fixed(group.fairness, 3), fixed(megabytes, 2), std::to_string(tally.not_sent),
                               std::to_string(tally.aborted), std::to_string(tally.failed),

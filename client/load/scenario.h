@@ -19,7 +19,7 @@ using Seconds = std::chrono::duration<double>;
 struct Group {
     std::string name;
     std::uint32_t count = 1;
-    net::Wish wish{};
+    net::Request request{};
     wire::Decoding decoding = wire::Decoding::kChecksum;
     double due_fps = 0.0;              ///< of the schedule; 0: what the server means to send
     double max_bytes_per_second = 0.0; ///< slow reader; 0: reads as fast as it can
@@ -48,8 +48,6 @@ std::uint32_t client_count(const Scenario& scenario);
 
 /// "full", "checksum", "headers".
 std::string_view name_of(wire::Decoding decoding);
-/// "views", "scene".
-std::string_view name_of(net::Mode mode);
 
 /// One more setting of a scenario or a group, by its name in scenario files. Returns the problem; empty: none.
 /// `set_in_group("grid", {"3x3"}, group)`.

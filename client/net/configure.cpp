@@ -5,7 +5,9 @@
 #include "core/wire/convert.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace fieldcast::client::net {
 namespace {
@@ -14,102 +16,81 @@ namespace {
 constexpr std::uint32_t kMaxViewSide = 8192;
 constexpr std::uint64_t kMaxFrameBytes = 1ULL << 30;
 
-v1::DeliveryMode to_proto(Mode mode) {
-    switch (mode) {
-    case Mode::kViews:
-        return v1::DELIVERY_MODE_VIEWS;
-    case Mode::kScene:
-        return v1::DELIVERY_MODE_SCENE;
-    case Mode::kWarp:
-        return v1::DELIVERY_MODE_WARP;
-    }
-    return v1::DELIVERY_MODE_UNSPECIFIED;
+/// What a client of that request makes its views from, in the order of the frames.
+std::vector<PlaneSemantic> planes_of(const Request& request) {
+    constexpr std::array kResidual{WarpPlane::kResidual};
+    const std::span<const WarpPlane> extra(kResidual);
+    return fieldcast::planes_of(request.mode, request.planes, extra.first(request.has_residual ? 1 : 0));
 }
 
-v1::PlaneSet to_proto(PlaneWish planes) {
-    switch (planes) {
-    case PlaneWish::kWithGBuffer:
-        return v1::PLANE_SET_WITH_G_BUFFER;
-    case PlaneWish::kIllumination:
-        return v1::PLANE_SET_ILLUMINATION;
-    case PlaneWish::kTotalLight:
-        return v1::PLANE_SET_TOTAL_LIGHT;
-    }
-    return v1::PLANE_SET_UNSPECIFIED;
-}
-
-/// Planes for which `Wish::codecs` holds.
-bool is_picture(v1::PlaneSemantic semantic) {
-    return semantic == v1::PLANE_SEMANTIC_COLOUR || semantic == v1::PLANE_SEMANTIC_DIFFUSE ||
-           semantic == v1::PLANE_SEMANTIC_SPECULAR || semantic == v1::PLANE_SEMANTIC_TOTAL_LIGHT ||
-           semantic == v1::PLANE_SEMANTIC_RESIDUAL_COLOUR;
-}
-
-void add_codecs(v1::Configure& message, const Wish& wish, v1::PlaneSemantic semantic) {
+void add_codecs(v1::Configure& message, const Request& request, PlaneSemantic semantic) {
     v1::CodecPreference& preference = *message.add_codecs();
-    preference.set_semantic(semantic);
-    preference.set_quality(wish.quality);
-    for (const codec::CodecId codec : wish.codecs) {
+    preference.set_semantic(wire::to_proto(semantic));
+    preference.set_quality(request.quality);
+    for (const Codec codec : request.codecs) {
         preference.add_codecs(wire::to_proto(codec));
     }
 }
 
-void add_light_codecs(v1::Configure& message, const Wish& wish) {
-    if (wish.planes == PlaneWish::kTotalLight) {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_TOTAL_LIGHT);
-    } else {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_DIFFUSE);
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_SPECULAR);
+void add_formats(v1::Configure& message, PlaneSemantic semantic) {
+    const PlaneRow row = row_of(semantic);
+    v1::CodecPreference& preference = *message.add_codecs();
+    preference.set_semantic(wire::to_proto(semantic));
+    preference.add_formats(wire::to_proto(*row.coarse_format));
+    preference.add_formats(wire::to_proto(row.format)); // of servers or recordings that do not have the other
+}
+
+void add_planes(v1::Configure& message, const Request& request) {
+    for (const PlaneSemantic semantic : planes_of(request)) {
+        if (is_picture(semantic)) {
+            add_codecs(message, request, semantic);
+        } else if (request.has_coarse_normals && semantic == PlaneSemantic::kNormal) {
+            add_formats(message, semantic);
+        }
+    }
+    if (request.mode == DeliveryMode::kWarp && request.has_residual) {
+        message.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
     }
 }
 
-void add_formats(v1::Configure& message, const Wish& wish) {
-    if (wish.has_coarse_normals && wish.planes == PlaneWish::kWithGBuffer) {
-        v1::CodecPreference& preference = *message.add_codecs();
-        preference.set_semantic(v1::PLANE_SEMANTIC_NORMAL);
-        preference.add_formats(v1::PLANE_FORMAT_OCT2X8);
-        preference.add_formats(v1::PLANE_FORMAT_OCT2X16); // of servers or recordings that do not have the other
-    }
-}
-
-void add_adaptation(v1::Configure& message, const AdaptationWish& wish) {
+void add_adaptation(v1::Configure& message, const AdaptationBounds& request) {
     v1::Adaptation& bounds = *message.mutable_adaptation();
-    if (wish.allows_jpeg) {
+    if (request.allows_jpeg) {
         bounds.add_codecs(v1::CODEC_JPEG);
     }
-    bounds.set_min_quality(wish.min_quality);
-    bounds.set_min_frames_per_second(wish.min_frames_per_second);
-    bounds.set_min_view_height_px(wish.min_view_height_px);
-    bounds.set_min_rows(wish.min_rows);
-    bounds.set_min_cols(wish.min_cols);
-    if (wish.allows_scene) {
+    bounds.set_min_quality(request.min_quality);
+    bounds.set_min_frames_per_second(request.min_frames_per_second);
+    bounds.set_min_view_height_px(request.min_view_height_px);
+    bounds.set_min_rows(request.min_rows);
+    bounds.set_min_cols(request.min_cols);
+    if (request.allows_scene) {
         bounds.add_modes(v1::DELIVERY_MODE_SCENE);
     }
-    bounds.set_max_queue_delay_ms(wish.max_queue_delay_ms);
+    bounds.set_max_queue_delay_ms(request.max_queue_delay_ms);
 }
 
-/// `wish` as it is when everything that a server may change by itself is what it chose, within the bounds. Then a
+/// `request` as it is when everything that a server may change by itself is what it chose, within the bounds. Then a
 /// Configured that has adapted is checked like an answer.
-Wish adapted_wish(const v1::Configured& message, const Wish& wish) {
-    const AdaptationWish& bounds = *wish.adaptation;
-    Wish adapted = wish;
+Request adapted_request(const v1::Configured& message, const Request& request) {
+    const AdaptationBounds& bounds = *request.adaptation;
+    Request adapted = request;
     if (bounds.allows_jpeg) {
-        adapted.codecs.push_back(codec::CodecId::kJpeg);
+        adapted.codecs.push_back(Codec::kJpeg);
     }
-    if (bounds.allows_scene && message.mode() == v1::DELIVERY_MODE_SCENE && wish.mode == Mode::kViews) {
-        adapted.mode = Mode::kScene;
-        adapted.planes = PlaneWish::kIllumination;
+    if (bounds.allows_scene && message.mode() == v1::DELIVERY_MODE_SCENE && request.mode == DeliveryMode::kViews) {
+        adapted.mode = DeliveryMode::kScene;
+        adapted.planes = PlaneSet::kIllumination;
         return adapted;
     }
     const v1::ViewSet& set = message.view_set();
     const auto lowered = [](std::uint32_t asked, std::uint32_t chosen, std::uint32_t least) {
         return least > 0 && chosen >= std::min(least, asked) && chosen <= asked ? chosen : asked;
     };
-    adapted.rows = lowered(wish.rows, set.grid().rows(), bounds.min_rows);
-    adapted.cols = lowered(wish.cols, set.grid().cols(), bounds.min_cols);
-    if (wish.height_px != 0 && bounds.min_view_height_px != 0) {
-        adapted.height_px = lowered(wish.height_px, set.height_px(), bounds.min_view_height_px);
-        adapted.width_px = lowered(wish.width_px, set.width_px(), 1);
+    adapted.rows = lowered(request.rows, set.grid().rows(), bounds.min_rows);
+    adapted.cols = lowered(request.cols, set.grid().cols(), bounds.min_cols);
+    if (request.height_px != 0 && bounds.min_view_height_px != 0) {
+        adapted.height_px = lowered(request.height_px, set.height_px(), bounds.min_view_height_px);
+        adapted.width_px = lowered(request.width_px, set.width_px(), 1);
     }
     return adapted;
 }
@@ -123,13 +104,14 @@ Adapted from_proto(const v1::Adapted& message) {
 }
 
 /// Why a server may not send planes in the codecs that it chose, or nothing.
-std::optional<std::string> codec_problem(const v1::Configured& message, const Wish& wish) {
+std::optional<std::string> codec_problem(const v1::Configured& message, const Request& request) {
     for (const v1::PlaneHeader& plane : message.planes()) {
         const auto codec = wire::from_proto(plane.codec());
+        const auto semantic = wire::from_proto(plane.semantic());
         const bool is_wanted =
-            codec && (is_picture(plane.semantic())
-                          ? std::find(wish.codecs.begin(), wish.codecs.end(), *codec) != wish.codecs.end()
-                          : !codec::is_lossy(*codec));
+            codec && (semantic && is_picture(*semantic)
+                          ? std::find(request.codecs.begin(), request.codecs.end(), *codec) != request.codecs.end()
+                          : !is_lossy(*codec));
         if (!is_wanted) {
             return "Configured: a codec that was not asked for";
         }
@@ -137,11 +119,11 @@ std::optional<std::string> codec_problem(const v1::Configured& message, const Wi
     return std::nullopt;
 }
 
-std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Wish& wish) {
-    if (set.grid.rows != wish.rows || set.grid.cols != wish.cols || set.grid.anchor != wish.anchor) {
+std::optional<std::string> view_set_problem(const wire::ViewSet& set, const Request& request) {
+    if (set.grid.rows != request.rows || set.grid.cols != request.cols || set.grid.anchor != request.anchor) {
         return "Configured: another grid than asked for";
     }
-    if (wish.width_px != 0 && (set.width_px != wish.width_px || set.height_px != wish.height_px)) {
+    if (request.width_px != 0 && (set.width_px != request.width_px || set.height_px != request.height_px)) {
         return "Configured: another view size than asked for";
     }
     if (set.width_px > kMaxViewSide || set.height_px > kMaxViewSide) {
@@ -162,9 +144,9 @@ std::optional<PlaneBound> plane_bound(const v1::PlaneHeader& plane) {
 }
 
 /// Of a source frame; none of views.
-Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, Mode mode) {
+Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, DeliveryMode mode) {
     std::vector<PlaneBound> bounds;
-    if (mode == Mode::kViews) {
+    if (!is_made_by_client(mode)) {
         return bounds;
     }
     for (const v1::PlaneHeader& plane : message.planes()) {
@@ -178,12 +160,12 @@ Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, Mod
 }
 
 /// Sizes in Configured are upper bounds; the assembler checks frames against what follows from them.
-Decoded<wire::FrameLimits> frame_limits(const std::vector<PlaneBound>& planes, const wire::ViewSet& set, Mode mode) {
+Decoded<wire::FrameLimits> frame_limits(const std::vector<PlaneBound>& planes, const wire::ViewSet& set, DeliveryMode mode) {
     wire::FrameLimits limits;
     limits.max_width_px = set.width_px;
     limits.max_height_px = set.height_px;
     limits.max_frame_bytes = plane_bytes(PlaneFormat::kRgb8, set.width_px, set.height_px) * set.grid.view_count();
-    if (mode != Mode::kViews) {
+    if (is_made_by_client(mode)) {
         limits.max_frame_bytes = 0;
         for (const PlaneBound& plane : planes) {
             limits.max_width_px = std::max(limits.max_width_px, plane.width_px);
@@ -209,15 +191,14 @@ std::optional<std::string> planes_problem(const std::vector<Plane>& planes, cons
     return std::nullopt;
 }
 
-std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set, Mode mode) {
-    const auto lacks = [&](PlaneSemantic semantic) { return frame.find(semantic) == nullptr; };
-    const bool lacks_light = lacks(PlaneSemantic::kTotalLight) &&
-                             (lacks(PlaneSemantic::kDiffuse) || lacks(PlaneSemantic::kSpecular));
-    if (mode == Mode::kScene && lacks_light) {
-        return "frame without illumination planes";
-    }
-    if (mode == Mode::kWarp && (lacks(PlaneSemantic::kColour) || lacks(PlaneSemantic::kInverseDepth))) {
-        return "frame without colour and inverse depth";
+std::optional<std::string> source_problem(const SourceFrame& frame, const wire::ViewSet& set, DeliveryMode mode) {
+    const auto has_all = [&](std::span<const PlaneSemantic> planes) {
+        return std::ranges::all_of(planes, [&](PlaneSemantic semantic) { return frame.find(semantic) != nullptr; });
+    };
+    const ModeRow row = row_of(mode);
+    const bool has_light = has_all(row_of(PlaneSet::kTotalLight).planes) || has_all(row_of(PlaneSet::kIllumination).planes);
+    if (!has_all(row.planes) || (row.needs_scene && !has_light)) {
+        return "frame without the planes that views are made from";
     }
     const Camera& source = frame.header.source;
     if (set.height_px > source.height_px || set.width_px > source.width_px) {
@@ -235,54 +216,45 @@ std::optional<std::string> views_problem(const wire::ReceivedViews& views, const
 
 } // namespace
 
-v1::Configure to_configure(const Wish& wish, std::uint32_t request_id) {
+v1::Configure to_configure(const Request& request, std::uint32_t request_id) {
     v1::Configure message;
     message.set_request_id(request_id);
-    message.set_channel(wish.channel);
-    message.add_modes(to_proto(wish.mode));
+    message.set_channel(request.channel);
+    message.add_modes(wire::to_proto(request.mode));
     v1::Grid& grid = *message.mutable_grid();
-    grid.set_rows(wish.rows);
-    grid.set_cols(wish.cols);
-    grid.set_anchor(wish.anchor == Anchor::kCentre ? v1::ANCHOR_CENTRE : v1::ANCHOR_LATTICE);
-    if (wish.spacing_m) {
-        grid.set_spacing_x_m(*wish.spacing_m);
-        grid.set_spacing_y_m(*wish.spacing_m);
+    grid.set_rows(request.rows);
+    grid.set_cols(request.cols);
+    grid.set_anchor(request.anchor == Anchor::kCentre ? v1::ANCHOR_CENTRE : v1::ANCHOR_LATTICE);
+    if (request.spacing_m) {
+        grid.set_spacing_x_m(*request.spacing_m);
+        grid.set_spacing_y_m(*request.spacing_m);
     }
-    if (wish.convergence_m) {
-        grid.set_convergence_m(*wish.convergence_m);
+    if (request.convergence_m) {
+        grid.set_convergence_m(*request.convergence_m);
     }
-    message.set_view_width_px(wish.width_px);
-    message.set_view_height_px(wish.height_px);
-    message.set_fovy_rad(wish.fovy_rad);
-    message.set_planes(to_proto(wish.planes));
-    if (wish.mode == Mode::kScene) {
-        add_light_codecs(message, wish);
-        add_formats(message, wish);
-    } else {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_COLOUR);
-    }
-    if (wish.mode == Mode::kWarp && wish.has_residual) {
-        add_codecs(message, wish, v1::PLANE_SEMANTIC_RESIDUAL_COLOUR);
-        message.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
-    }
-    message.set_max_frames_per_second(wish.max_frames_per_second);
+    message.set_view_width_px(request.width_px);
+    message.set_view_height_px(request.height_px);
+    message.set_fovy_rad(request.fovy_rad);
+    message.set_planes(static_cast<v1::PlaneSet>(request.planes));
+    add_planes(message, request);
+    message.set_max_frames_per_second(request.max_frames_per_second);
     message.set_keeps_key_frames(true);
-    if (wish.adaptation) {
-        add_adaptation(message, *wish.adaptation);
+    if (request.adaptation) {
+        add_adaptation(message, *request.adaptation);
     }
     return message;
 }
 
-Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& asked) {
+Decoded<Agreement> from_configured(const v1::Configured& message, const Request& asked) {
     if (message.has_adapted() && !asked.adaptation) {
         return decode_error("Configured: adapted, which was not asked for");
     }
-    const Wish wish = message.has_adapted() ? adapted_wish(message, asked) : asked;
+    const Request request = message.has_adapted() ? adapted_request(message, asked) : asked;
     Agreement agreement;
     agreement.epoch = message.epoch();
     agreement.channel = message.channel();
-    agreement.mode = wish.mode;
-    if (message.mode() != to_proto(wish.mode)) {
+    agreement.mode = request.mode;
+    if (message.mode() != wire::to_proto(request.mode)) {
         return decode_error("Configured: another delivery mode than asked for");
     }
     if (message.epoch() == 0 || message.scene_hash().size() != agreement.scene_hash.size()) {
@@ -294,23 +266,23 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& as
         return decode_error("Configured: " + set.error().message);
     }
     agreement.view_set = *set;
-    if (const auto problem = view_set_problem(*set, wish)) {
+    if (const auto problem = view_set_problem(*set, request)) {
         return decode_error(*problem);
     }
-    if (const auto problem = codec_problem(message, wish)) {
+    if (const auto problem = codec_problem(message, request)) {
         return decode_error(*problem);
     }
-    Decoded<std::vector<PlaneBound>> planes = plane_bounds(message, wish.mode);
+    Decoded<std::vector<PlaneBound>> planes = plane_bounds(message, request.mode);
     if (!planes) {
         return tl::unexpected(planes.error());
     }
     agreement.planes = std::move(*planes);
-    const Decoded<wire::FrameLimits> limits = frame_limits(agreement.planes, *set, wish.mode);
+    const Decoded<wire::FrameLimits> limits = frame_limits(agreement.planes, *set, request.mode);
     if (!limits) {
         return tl::unexpected(limits.error());
     }
     agreement.limits = *limits;
-    agreement.wish = wish;
+    agreement.request = request;
     agreement.adapted = message.has_adapted() ? std::optional(from_proto(message.adapted())) : std::nullopt;
     const float rate = message.frames_per_second();
     agreement.frames_per_second = is_rate_bound(rate) ? rate : 0.0F;
@@ -319,7 +291,7 @@ Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& as
 
 std::optional<std::string> frame_problem(const wire::ReceivedFrame& frame, const Agreement& agreement) {
     const auto* views = std::get_if<wire::ReceivedViews>(&frame.content);
-    if ((views != nullptr) != (agreement.mode == Mode::kViews)) {
+    if ((views == nullptr) != is_made_by_client(agreement.mode)) {
         return "frame of another delivery mode than agreed";
     }
     if (views != nullptr) {

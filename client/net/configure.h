@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/error.h"
+#include "core/lightfield/vocabulary.h"
 #include "core/scene/scene.h"
 #include "core/wire/frame_assembler.h"
 
@@ -13,21 +14,8 @@
 
 namespace fieldcast::client::net {
 
-enum class Mode : std::uint8_t {
-    kViews, ///< the server sends finished views
-    kScene, ///< the server sends planes of the source; we have the scene and make the views
-    kWarp,  ///< the server sends the source's colour and depth; we make the views without the scene
-};
-
-/// Of mode kScene.
-enum class PlaneWish : std::uint8_t {
-    kWithGBuffer,
-    kIllumination,
-    kTotalLight, ///< illumination in one plane instead of two
-};
-
 /// What the server may change by itself when the connection carries less than we ask for. Zero: nothing of that kind.
-struct AdaptationWish {
+struct AdaptationBounds {
     bool allows_jpeg = true;
     std::uint8_t min_quality = 40;
     float min_frames_per_second = 2.0F;
@@ -39,9 +27,9 @@ struct AdaptationWish {
 };
 
 /// What to ask a server for. Zero or unset: as the server's channel has it.
-struct Wish {
+struct Request {
     std::string channel;
-    Mode mode = Mode::kViews;
+    DeliveryMode mode = DeliveryMode::kViews;
     std::uint32_t rows = 4;
     std::uint32_t cols = 4;
     Anchor anchor = Anchor::kLattice;
@@ -50,15 +38,15 @@ struct Wish {
     std::uint32_t width_px = 0;         ///< of a view, together with height_px
     std::uint32_t height_px = 0;
     float fovy_rad = 0.0F; ///< vertical
-    PlaneWish planes = PlaneWish::kWithGBuffer;
+    PlaneSet planes = PlaneSet::kWithGBuffer; ///< of mode kScene
     bool has_coarse_normals = false; ///< of kWithGBuffer: 8 bits a component rather than 16
     bool has_residual = true; ///< of mode kWarp: also what corner views see and the source does not
     /// Of views, of the illumination in mode kScene or of colour in mode kWarp, most wanted first; other planes are
     /// always lossless.
-    std::vector<codec::CodecId> codecs{codec::CodecId::kZstdFiltered};
+    std::vector<Codec> codecs{Codec::kZstdFiltered};
     std::uint8_t quality = 0; ///< of lossy codecs, 1 to 100; 0: the server's choice
     float max_frames_per_second = 0.0F;
-    std::optional<AdaptationWish> adaptation{}; ///< unset: nothing changes unless we ask
+    std::optional<AdaptationBounds> adaptation{}; ///< unset: nothing changes unless we ask
 };
 
 /// Why the server has changed a configuration by itself.
@@ -83,20 +71,20 @@ struct Agreement {
     std::uint32_t epoch = 0;
     std::string channel;
     scene::SceneHash scene_hash{};
-    Mode mode = Mode::kViews;
+    DeliveryMode mode = DeliveryMode::kViews;
     wire::ViewSet view_set;
     wire::FrameLimits limits;       ///< for every frame of this epoch
     std::vector<PlaneBound> planes; ///< of source frames, in their order; empty in mode kViews
     float frames_per_second = 0.0F; ///< that the server means to send at most; 0: it does not say
-    Wish wish;                      ///< that it answers
-    std::optional<Adapted> adapted{}; ///< set: a change within `wish.adaptation`, not an answer
+    Request request;                      ///< that it answers
+    std::optional<Adapted> adapted{}; ///< set: a change within `request.adaptation`, not an answer
 };
 
-v1::Configure to_configure(const Wish& wish, std::uint32_t request_id);
+v1::Configure to_configure(const Request& request, std::uint32_t request_id);
 
-/// Checks that a Configured answers `wish`: mode and grid as asked, or within what `wish.adaptation` allows if the
+/// Checks that a Configured answers `request`: mode and grid as asked, or within what `request.adaptation` allows if the
 /// server says that it has adapted; everything within what a client can hold.
-Decoded<Agreement> from_configured(const v1::Configured& message, const Wish& wish);
+Decoded<Agreement> from_configured(const v1::Configured& message, const Request& request);
 
 /// Why a frame does not fit what was agreed, or nothing. Afterwards views have the agreed number and size, and source
 /// frames contain the planes that views are made from and no view is larger than the source.

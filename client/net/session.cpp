@@ -41,19 +41,19 @@ v1::ClientMessage to_ack(const FrameReport& report, v1::FrameOutcome outcome) {
 
 } // namespace
 
-Session::Session(const Connection& connection, const Wish& wish, WorkerPool& pool)
-    : Session(connection, wish, pool, Options{}) {}
+Session::Session(const Connection& connection, const Request& request, WorkerPool& pool)
+    : Session(connection, request, pool, Options{}) {}
 
-Session::Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options)
+Session::Session(const Connection& connection, const Request& request, WorkerPool& pool, Options options)
     : stream_(connection, std::move(options.reading)), assembler_(&pool, options.decoding),
       next_sync_(Clock::now()), last_message_(Clock::now()) {
-    configure(wish);
+    configure(request);
 }
 
-void Session::configure(const Wish& wish) {
-    asked_.push_back({++last_request_id_, wish});
+void Session::configure(const Request& request) {
+    asked_.push_back({++last_request_id_, request});
     v1::ClientMessage message;
-    *message.mutable_configure() = to_configure(wish, last_request_id_);
+    *message.mutable_configure() = to_configure(request, last_request_id_);
     stream_.send(std::move(message));
 }
 
@@ -145,11 +145,11 @@ std::optional<Event> Session::handle_configured(const v1::Configured& message) {
     if (asked_.empty() || message.request_id() != asked_.front().request_id) {
         return broken("Configured that nobody asked for");
     }
-    Decoded<Agreement> agreement = from_configured(message, asked_.front().wish);
+    Decoded<Agreement> agreement = from_configured(message, asked_.front().request);
     if (!agreement) {
         return broken(agreement.error().message);
     }
-    wish_ = std::move(asked_.front().wish);
+    request_ = std::move(asked_.front().request);
     granted_request_id_ = asked_.front().request_id;
     asked_.pop_front();
     return begin_epoch(std::move(*agreement));
@@ -159,7 +159,7 @@ std::optional<Event> Session::handle_adapted(const v1::Configured& message) {
     if (!agreement_ || message.request_id() != granted_request_id_ || message.channel() != agreement_->channel) {
         return broken("an adapted configuration of nothing that was granted");
     }
-    Decoded<Agreement> agreement = from_configured(message, wish_);
+    Decoded<Agreement> agreement = from_configured(message, request_);
     if (!agreement) {
         return broken(agreement.error().message);
     }

@@ -81,12 +81,12 @@ public:
     };
 
     /// `pool` decodes; it must outlive this.
-    Session(const Connection& connection, const Wish& wish, WorkerPool& pool);
-    Session(const Connection& connection, const Wish& wish, WorkerPool& pool, Options options);
+    Session(const Connection& connection, const Request& request, WorkerPool& pool);
+    Session(const Connection& connection, const Request& request, WorkerPool& pool, Options options);
 
     /// Asks for something else on the running stream. Answered by an Agreement, from which on all frames are of the new
     /// configuration, or by Refused. For the thread that calls `next`. At most `kMaxUnanswered` may be unanswered.
-    void configure(const Wish& wish);
+    void configure(const Request& request);
     bool may_configure() const { return asked_.size() < kMaxUnanswered; }
     static constexpr std::size_t kMaxUnanswered = 8;
 
@@ -124,13 +124,13 @@ private:
     /// A Configure that was not answered yet.
     struct Asked {
         std::uint32_t request_id = 0;
-        Wish wish;
+        Request request;
     };
 
     std::deque<Asked> asked_; ///< oldest first: that is also the order of the answers
     std::uint32_t last_request_id_ = 0;
     std::uint32_t granted_request_id_ = 0;
-    Wish wish_; ///< granted
+    Request request_; ///< granted
     MessageStream stream_;
     wire::FrameAssembler assembler_;
     ClockSync clock_;

@@ -19,7 +19,7 @@ struct ChangeMoment {
 
 struct Change {
     ChangeMoment moment;
-    net::Wish wish; ///< complete, not only what differs
+    net::Request request; ///< complete, not only what differs
 };
 
 /// Changes in their order, and where the run stands in them. Goes on over reconnects.
@@ -29,15 +29,15 @@ public:
 
     explicit ChangeSchedule(std::vector<Change> changes) : changes_(std::move(changes)) {}
 
-    /// The wish to ask for now, if a change is due; each is returned once.
-    std::optional<net::Wish> due(TimePoint now) {
+    /// The request to ask for now, if a change is due; each is returned once.
+    std::optional<net::Request> due(TimePoint now) {
         if (next_ >= changes_.size() || !begin_) {
             return std::nullopt;
         }
         const ChangeMoment& moment = changes_[next_].moment;
         const bool is_due =
             (moment.after && now - *begin_ >= *moment.after) || (moment.frames && frames_ >= *moment.frames);
-        return is_due ? std::optional(changes_[next_++].wish) : std::nullopt;
+        return is_due ? std::optional(changes_[next_++].request) : std::nullopt;
     }
 
     void agreed(TimePoint now) { begin_ = begin_.value_or(now); }

@@ -20,7 +20,7 @@ struct Shown {
     std::uint64_t frame_id = 0;
     ViewGrid grid;
     Views views;
-    net::Mode mode = net::Mode::kViews;
+    DeliveryMode mode = DeliveryMode::kViews;
 };
 
 constexpr std::size_t kRememberedEpochs = 256;
@@ -31,23 +31,12 @@ std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, st
 }
 
 std::string mode_text(const net::Agreement& agreement) {
-    switch (agreement.mode) {
-    case net::Mode::kViews:
-        return "views";
-    case net::Mode::kWarp:
-        return agreement.wish.has_residual ? "warp" : "warp, without residual layer";
-    case net::Mode::kScene:
-        break;
+    const std::string word(word_of(agreement.mode));
+    if (row_of(agreement.mode).needs_scene) {
+        return word + ", " + std::string(word_of(agreement.request.planes));
     }
-    switch (agreement.wish.planes) {
-    case net::PlaneWish::kIllumination:
-        return "scene, illumination";
-    case net::PlaneWish::kTotalLight:
-        return "scene, total light";
-    case net::PlaneWish::kWithGBuffer:
-        break;
-    }
-    return "scene, with G-buffer";
+    return is_made_by_client(agreement.mode) && !agreement.request.has_residual ? word + ", without residual layer"
+                                                                                : word;
 }
 
 std::string grid_text(const ViewGrid& grid) {
@@ -130,7 +119,7 @@ bool Player::show(Arrival arrival) {
         write(options_.out / name.data());
     }
     const std::int64_t shown_ns = net::steady_now_ns();
-    report_times(arrival, false, last_->mode != net::Mode::kViews ? rendered_ns : 0, shown_ns);
+    report_times(arrival, false, is_made_by_client(last_->mode) ? rendered_ns : 0, shown_ns);
     record(arrival, begin_ns, rendered_ns, shown_ns);
     return true;
 }
@@ -144,7 +133,7 @@ void Player::record(const Arrival& arrival, std::int64_t begin_ns, std::int64_t 
     frame.pose_to_shown_ms = ms_between(arrival.arrived.pose_sampled_ns, shown_ns);
     frame.motion_to_photon_ms = ms_between(arrival.pose_chosen_ns, shown_ns);
     frame.decode_ms = std::chrono::duration<double, std::milli>(arrival.arrived.frame.decode_time).count();
-    const bool made_views = last_->mode != net::Mode::kViews;
+    const bool made_views = is_made_by_client(last_->mode);
     frame.render_ms = made_views ? static_cast<double>(rendered_ns - begin_ns) * 1e-6 : 0.0;
     frame.shown_ns = shown_ns;
     add_discards(last_->views, frame);
@@ -188,7 +177,7 @@ void Player::count_epoch(const Arrival& arrival) {
 
 void Player::write(const std::filesystem::path& folder) const {
     std::optional<SourceFrame> source;
-    if (options_.products.source_exr && last_->mode == net::Mode::kScene) {
+    if (options_.products.source_exr && row_of(last_->mode).needs_scene) {
         source = render_side_->source(); // of the frame played last, which is the one shown last
     }
     const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
@@ -220,10 +209,10 @@ Progress Player::progress() const {
 
 void describe(const PlayOptions& options, const std::optional<net::Agreement>& agreement, Summary& summary) {
     net::Agreement asked;
-    asked.mode = options.wish.mode;
-    asked.wish = options.wish;
+    asked.mode = options.request.mode;
+    asked.request = options.request;
     summary.mode = mode_text(agreement.value_or(asked));
-    summary.grid = std::to_string(options.wish.rows) + "x" + std::to_string(options.wish.cols);
+    summary.grid = std::to_string(options.request.rows) + "x" + std::to_string(options.request.cols);
     if (agreement) {
         summary.grid = grid_text(agreement->view_set.grid);
         summary.view_size = size_text(agreement->view_set);
@@ -232,14 +221,14 @@ void describe(const PlayOptions& options, const std::optional<net::Agreement>& a
 
 } // namespace
 
-bool asks_for(const PlayOptions& options, net::Mode mode) {
-    return options.wish.mode == mode ||
-           std::ranges::any_of(options.changes, [&](const Change& change) { return change.wish.mode == mode; });
+bool asks_for(const PlayOptions& options, DeliveryMode mode) {
+    return options.request.mode == mode ||
+           std::ranges::any_of(options.changes, [&](const Change& change) { return change.request.mode == mode; });
 }
 
 bool needs_scene(const PlayOptions& options) {
-    const bool may_adapt = options.wish.adaptation && options.wish.adaptation->allows_scene;
-    return may_adapt || asks_for(options, net::Mode::kScene);
+    const bool may_adapt = options.request.adaptation && options.request.adaptation->allows_scene;
+    return may_adapt || asks_for(options, DeliveryMode::kScene);
 }
 
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
@@ -249,7 +238,7 @@ PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const
         recorder.emplace(options.timing_files);
     }
     timing::Recorder* const records = recorder ? &*recorder : nullptr;
-    Receiver receiver(options.server, options.wish, render_side ? render_side->scene_hash() : std::nullopt,
+    Receiver receiver(options.server, options.request, render_side ? render_side->scene_hash() : std::nullopt,
                       {.steering = options.steering, .changes = options.changes, .recorder = records});
     Player player(options, render_side.get(), records);
     std::optional<net::Agreement> agreement;

@@ -17,7 +17,7 @@ enum class Save : std::uint8_t { kLast, kAll, kNone };
 
 struct PlayOptions {
     ServerOptions server;
-    net::Wish wish;
+    net::Request request;
     std::optional<SteeringOptions> steering{}; ///< moves the camera, too
     std::vector<Change> changes{}; ///< on the running stream, in their order
     std::uint64_t frames = 0; ///< ends after so many shown frames; 0: only on a stop request
@@ -34,7 +34,7 @@ struct PlayOptions {
 };
 
 /// Whether frames of that mode are asked for, at once or by a change.
-bool asks_for(const PlayOptions& options, net::Mode mode);
+bool asks_for(const PlayOptions& options, DeliveryMode mode);
 
 /// Whether this machine may have to make views from the scene.
 bool needs_scene(const PlayOptions& options);

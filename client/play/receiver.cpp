@@ -27,7 +27,7 @@ struct Receiver::SessionState {
     std::shared_ptr<net::Session> session;
     Attempts* attempts = nullptr;
     std::optional<net::Agreement> agreement;
-    net::Wish granted; ///< what `agreement` answers
+    net::Request granted; ///< what `agreement` answers
     std::optional<SessionEnd> end;
     std::optional<Clock::time_point> cut_at; ///< we half-closed; the server has so long to finish
 
@@ -37,9 +37,9 @@ struct Receiver::SessionState {
     }
 };
 
-Receiver::Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+Receiver::Receiver(const ServerOptions& server, const net::Request& request, std::optional<scene::SceneHash> scene_hash,
                    ReceiverExtras extras)
-    : server_(server), wish_(wish), changes_(std::move(extras.changes)), scene_hash_(scene_hash),
+    : server_(server), request_(request), changes_(std::move(extras.changes)), scene_hash_(scene_hash),
       pilot_(extras.steering ? std::optional<Pilot>(std::move(*extras.steering)) : std::nullopt),
       recorder_(extras.recorder),
       pool_(std::min(kDecodingThreads, std::max(1U, std::thread::hardware_concurrency()))),
@@ -81,7 +81,7 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
     const net::Connection connection(server_.address, server_.access);
     SessionState state;
     state.attempts = &attempts;
-    state.session = std::make_shared<net::Session>(connection, wish_, pool_);
+    state.session = std::make_shared<net::Session>(connection, request_, pool_);
     while (!state.end) {
         const auto look_at = Clock::now() + kLookAtStop;
         if (auto event = state.session->next(pilot_ ? std::min(look_at, pilot_->next_call()) : look_at)) {
@@ -128,9 +128,9 @@ void Receiver::ask_for_change(SessionState& state) {
     if (state.cut_at || state.end || !state.session->may_configure()) {
         return;
     }
-    if (auto wish = changes_.due(Clock::now())) {
-        wish_ = std::move(*wish);
-        state.session->configure(wish_);
+    if (auto request = changes_.due(Clock::now())) {
+        request_ = std::move(*request);
+        state.session->configure(request_);
     }
 }
 
@@ -138,7 +138,7 @@ void Receiver::ask_for_change(SessionState& state) {
 void Receiver::refused(const net::Refused& refused, SessionState& state) {
     if (refused.was_change && refused.is_transient) {
         log::warn("change refused", {{"reason", refused.message}});
-        wish_ = state.granted;
+        request_ = state.granted;
         return;
     }
     state.end = SessionEnd{"refused: " + refused.message, refused.is_transient, true};
@@ -162,7 +162,7 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
         state.agreement = std::move(agreement);
         return;
     }
-    state.granted = agreement.wish;
+    state.granted = agreement.request;
     if (state.agreement) {
         ++counts_.lock()->changes;
         log::info("configuration changed", {{"epoch", agreement.epoch}});

@@ -27,7 +27,7 @@ struct ServerOptions {
 /// Why no more frames come.
 struct Failure {
     std::string message;
-    bool was_refused = false; ///< the server will not do what was asked, or for whom: another wish or token may work
+    bool was_refused = false; ///< the server will not do what was asked, or for whom: another request or token may work
 };
 
 /// What a receiver may do besides.
@@ -43,7 +43,7 @@ struct ReceiverExtras {
 class Receiver {
 public:
     /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
-    Receiver(const ServerOptions& server, const net::Wish& wish, std::optional<scene::SceneHash> scene_hash,
+    Receiver(const ServerOptions& server, const net::Request& request, std::optional<scene::SceneHash> scene_hash,
              ReceiverExtras extras = {});
 
     /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
@@ -74,7 +74,7 @@ private:
     void steered(const net::SteeringNews& news, SessionState& state);
 
     ServerOptions server_;
-    net::Wish wish_; ///< asked for last, and again after a reconnect
+    net::Request request_; ///< asked for last, and again after a reconnect
     ChangeSchedule changes_;
     std::optional<scene::SceneHash> scene_hash_;
     std::optional<Pilot> pilot_; ///< for the thread

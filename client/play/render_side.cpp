@@ -10,7 +10,7 @@ namespace fieldcast::client::play {
 
 std::unique_ptr<RenderSide> RenderSide::make(const PlayOptions& options, const std::stop_token& stop) {
     const bool plays_scenes = needs_scene(options);
-    if (!plays_scenes && !asks_for(options, net::Mode::kWarp)) {
+    if (!plays_scenes && !asks_for(options, DeliveryMode::kWarp)) {
         return nullptr;
     }
     gpu::DeviceOptions device_options;
@@ -24,20 +24,30 @@ std::unique_ptr<RenderSide> RenderSide::make(const PlayOptions& options, const s
                                ". With --mode views the server makes them.");
     }
     log::info("device chosen", {{"name", side->device_.info().name}, {"driver", side->device_.info().driver}});
-    if (asks_for(options, net::Mode::kWarp)) {
+    if (asks_for(options, DeliveryMode::kWarp)) {
         side->warp_.emplace(side->device_);
     }
     if (plays_scenes) {
-        scene::Scene scene = obtain_scene(options.server, options.wish.channel, options.cache_folder, stop);
+        scene::Scene scene = obtain_scene(options.server, options.request.channel, options.cache_folder, stop);
         side->hash_ = scene.hash;
         side->scene_.emplace(side->device_, std::move(scene), options.traversal, options.visibility);
     }
     return side;
 }
 
-Decoded<Views> RenderSide::play(net::Mode mode, const SourceFrame& frame, const wire::ViewSet& set) {
-    FC_ASSERT(mode == net::Mode::kScene ? scene_.has_value() : warp_.has_value(), "only asked modes are agreed on");
-    return mode == net::Mode::kScene ? scene_->play(frame, set) : warp_->play(frame, set);
+Decoded<Views> RenderSide::play(DeliveryMode mode, const SourceFrame& frame, const wire::ViewSet& set) {
+    switch (mode) {
+    case DeliveryMode::kViews:
+        break;
+    case DeliveryMode::kScene:
+        FC_ASSERT(scene_.has_value(), "only asked modes are agreed on");
+        return scene_->play(frame, set);
+    case DeliveryMode::kWarp:
+        FC_ASSERT(warp_.has_value(), "only asked modes are agreed on");
+        return warp_->play(frame, set);
+    }
+    FC_ASSERT(false, "finished views need no renderer");
+    return decode_error("");
 }
 
 } // namespace fieldcast::client::play

@@ -23,7 +23,7 @@ public:
     std::optional<scene::SceneHash> scene_hash() const { return hash_; }
 
     /// Makes the views of `set` from a frame of mode `mode`.
-    Decoded<Views> play(net::Mode mode, const SourceFrame& frame, const wire::ViewSet& set);
+    Decoded<Views> play(DeliveryMode mode, const SourceFrame& frame, const wire::ViewSet& set);
 
     /// Of the last frame of mode kScene.
     SourceFrame source() { return scene_->source(); }

@@ -140,37 +140,45 @@ Decoded<void> decode_jpeg_body(PlaneFormat format, BandSize size, std::span<cons
     return {};
 }
 
+/// False, with `strip` unchanged, if the result is not smaller than the pixels.
+bool append_filtered(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
+    header.filter = options.filter.value_or(choose_filter(header.format, rows));
+    const bool is_temporal = header.filter.predictor == Predictor::kReference;
+    const bool is_smaller = append_zstd(header.filter, rows.size, rows.pixels,
+                                        is_temporal ? rows.reference : std::span<const std::byte>(), strip);
+    if (!is_smaller) {
+        strip.resize(kStripHeaderBytes);
+    }
+    return is_smaller;
+}
+
+/// Says in `header` what the strip is. False, with `strip` unchanged, if the codec's body is not smaller than the pixels.
+bool append_encoded(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
+    switch (options.encoding.codec) {
+    case Codec::kRaw:
+        return false;
+    case Codec::kZstdFiltered:
+        header.coding = StripCoding::kZstdFiltered;
+        return append_filtered(rows, options, header, strip);
+    case Codec::kJpeg:
+        header.coding = StripCoding::kJpeg;
+        return append_jpeg(header.format, rows, options, strip);
+    case Codec::kH264:
+        header.coding = StripCoding::kH264;
+        header.is_predicted = !rows.base.empty();
+        return append_h264(rows, options.encoding.quality, strip);
+    }
+    return false;
+}
+
 /// Appends the body to `strip`, which consists of an unwritten header, and says in `header` what it is.
 void append_body(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
     if (!rows.reference.empty() && std::ranges::equal(rows.pixels, rows.reference)) {
         header.coding = StripCoding::kRepeat;
-        return;
+    } else if (!append_encoded(rows, options, header, strip)) {
+        header.coding = StripCoding::kRaw;
+        strip.insert(strip.end(), rows.pixels.begin(), rows.pixels.end());
     }
-    if (options.encoding.codec == CodecId::kJpeg) {
-        header.coding = StripCoding::kJpeg;
-        if (append_jpeg(header.format, rows, options, strip)) {
-            return;
-        }
-    }
-    if (options.encoding.codec == CodecId::kH264) {
-        header.coding = StripCoding::kH264;
-        header.is_predicted = !rows.base.empty();
-        if (append_h264(rows, options.encoding.quality, strip)) {
-            return;
-        }
-    }
-    if (options.encoding.codec == CodecId::kZstdFiltered) {
-        header.coding = StripCoding::kZstdFiltered;
-        header.filter = options.filter.value_or(choose_filter(header.format, rows));
-        const bool is_temporal = header.filter.predictor == Predictor::kReference;
-        if (append_zstd(header.filter, rows.size, rows.pixels,
-                        is_temporal ? rows.reference : std::span<const std::byte>(), strip)) {
-            return;
-        }
-        strip.resize(kStripHeaderBytes);
-    }
-    header.coding = StripCoding::kRaw;
-    strip.insert(strip.end(), rows.pixels.begin(), rows.pixels.end());
 }
 
 Decoded<void> decode_body(const StripHeader& header, std::span<const std::byte> body, const Rows& rows,
@@ -221,7 +229,7 @@ std::vector<std::byte> encode_strip(const Plane& plane, RowBand band, const Stri
     FC_ASSERT(plane.width_px <= kMaxPlaneSide && plane.height_px <= kMaxPlaneSide, "plane too large for the wire");
     FC_ASSERT(is_alike(options.reference, plane), "reference of another size or format");
     FC_ASSERT(is_alike(options.base, plane), "base view of another size or format");
-    FC_ASSERT(fits(options.encoding.codec, plane.format), "codec does not fit the format");
+    FC_ASSERT(carries(options.encoding.codec, plane.format), "codec does not fit the format");
     Rows rows{band_size(plane, band), rows_of(plane.bytes, plane, band), {}};
     if (options.reference != nullptr) {
         rows.reference = rows_of(options.reference->bytes, plane, band);
@@ -262,13 +270,9 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
     if (header->format != plane.format || header->width_px != plane.width_px || header->band != band) {
         return decode_error("strip header: format, width or rows differ from what was announced");
     }
-    if (header->coding == StripCoding::kJpeg &&
-        (announced.codec != CodecId::kJpeg || !fits(CodecId::kJpeg, plane.format))) {
-        return decode_error("strip: JPEG in a plane of another codec");
-    }
-    if (header->coding == StripCoding::kH264 &&
-        (announced.codec != CodecId::kH264 || !fits(CodecId::kH264, plane.format))) {
-        return decode_error("strip: H.264 in a plane of another codec");
+    const std::optional<Codec> codec = codec_of(header->coding);
+    if (codec && is_lossy(*codec) && (announced.codec != *codec || !carries(*codec, plane.format))) {
+        return decode_error("strip: " + std::string(word_of(*codec)) + " in a plane of another codec");
     }
     if (header->needs_reference() && reference == nullptr) {
         return decode_error("strip: refers to another frame, its frame does not");

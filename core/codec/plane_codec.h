@@ -48,7 +48,7 @@ bool can_be_base(std::span<const std::byte> strip);
 
 /// What a receiver knows about the strips of a plane.
 struct Announced {
-    CodecId codec = CodecId::kZstdFiltered; ///< strips may be of this kind, or lossless
+    Codec codec = Codec::kZstdFiltered; ///< strips may be of this kind, or lossless
     const Plane* reference = nullptr;       ///< of the same format and size; null: strips that need one are refused
     std::span<const std::byte> base{};      ///< the strip of the same rows of the base view; empty: none
 };

@@ -71,6 +71,21 @@ Decoded<ByteFilter> read_filter(StripCoding coding, PlaneFormat format, std::spa
 
 } // namespace
 
+std::optional<Codec> codec_of(StripCoding coding) {
+    switch (coding) {
+    case StripCoding::kZstdFiltered:
+        return Codec::kZstdFiltered;
+    case StripCoding::kJpeg:
+        return Codec::kJpeg;
+    case StripCoding::kH264:
+        return Codec::kH264;
+    case StripCoding::kRaw:
+    case StripCoding::kRepeat:
+        break;
+    }
+    return std::nullopt;
+}
+
 bool StripHeader::needs_reference() const {
     return coding == StripCoding::kRepeat ||
            (coding == StripCoding::kZstdFiltered && filter.predictor == Predictor::kReference);

@@ -3,9 +3,11 @@
 
 #include "core/base/error.h"
 #include "core/codec/byte_filter.h"
+#include "core/lightfield/vocabulary.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,9 @@ enum class StripCoding : std::uint8_t {
     kH264 = 4,         ///< an H.264 byte stream of one picture
     kRepeat = 5,       ///< no bytes: the pixels of the reference
 };
+
+/// The codec that makes such strips; nothing: every codec may.
+std::optional<Codec> codec_of(StripCoding coding);
 
 /// A band of rows of a plane.
 struct RowBand {

@@ -4,20 +4,7 @@
 namespace fieldcast {
 
 std::uint32_t bytes_per_pixel(PlaneFormat format) {
-    switch (format) {
-    case PlaneFormat::kR11G11B10F:
-    case PlaneFormat::kF32:
-    case PlaneFormat::kOct2x16:
-    case PlaneFormat::kU32:
-        return 4;
-    case PlaneFormat::kRg8:
-    case PlaneFormat::kR16:
-    case PlaneFormat::kOct2x8:
-        return 2;
-    case PlaneFormat::kRgb8:
-        return 3;
-    }
-    return 0;
+    return row_of(format).bytes_per_pixel;
 }
 
 std::uint64_t plane_bytes(PlaneFormat format, std::uint32_t width_px, std::uint32_t height_px) {

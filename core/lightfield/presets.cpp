@@ -9,10 +9,10 @@ namespace {
 
 std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, std::uint32_t cols) {
     Preset preset;
-    if (name == "ours" || name == "red") {
+    if (name == "default" || name == "denoised-views") {
         preset.settings.holes.cascade_rows = rows;
         preset.settings.holes.cascade_cols = cols;
-        preset.settings.route = name == "red" ? Route::kRed : Route::kGreen;
+        preset.settings.denoised_images = name == "denoised-views" ? DenoisedImages::kViews : DenoisedImages::kSource;
         return preset;
     }
     preset.has_guard_band = false;
@@ -29,7 +29,7 @@ std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, 
     if (name == "svgf" || name == "paper" || name == "paper-red") {
         preset.settings.denoiser = Denoiser::kSvgf;
         preset.settings.accumulate_views = name == "paper";
-        preset.settings.route = name == "paper-red" ? Route::kRed : Route::kGreen;
+        preset.settings.denoised_images = name == "paper-red" ? DenoisedImages::kViews : DenoisedImages::kSource;
         return preset;
     }
     if (name == "bmfr") {
@@ -80,8 +80,8 @@ std::optional<Preset> find_preset(const std::string& name, std::uint32_t rows, s
 }
 
 std::string preset_names() {
-    return "reprojected, svgf, bmfr, paper, paper-red, ours, red; changed by /sobol, /z-sobol, /no-candidates, "
-           "/one-light-sample, /no-history-light, /no-reflections, /no-guard-band, /traced-holes";
+    return "reprojected, svgf, bmfr, paper, paper-red, default, denoised-views; changed by /sobol, /z-sobol, "
+           "/no-candidates, /one-light-sample, /no-history-light, /no-reflections, /no-guard-band, /traced-holes";
 }
 
 } // namespace fieldcast

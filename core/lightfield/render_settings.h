@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/lightfield/vocabulary.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
 
 namespace fieldcast {
 
-enum class Denoiser : std::uint8_t {
-    kNone = 0,
-    kSvgf = 1,     ///< with its paper's parameters
-    kSvgfPlus = 2, ///< two histories, sharper and faster (docs/lightfield.md)
-    kBmfr = 3,     ///< blockwise fits, with its paper's parameters
-};
-/// Where the denoiser stands: the two routes of figure 1 of the light field paper (docs/lightfield.md).
-enum class Route : std::uint8_t {
-    kGreen = 0, ///< in the source, whose denoised light is then reprojected
-    kRed = 1,   ///< in every view, after the source's noisy light was reprojected and holes were filled
-};
 enum class ToneMap : std::uint8_t { kClampSrgb = 0, kAces = 1 };
 
 /// Thresholds of the spatial reprojection test, in units of the pixel footprint ρ = 2 z tan(fovy/2) / H
@@ -82,10 +73,10 @@ struct RenderSettings {
     Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
     float temporal_alpha = 0.2F; ///< paper, section 3.2
-    /// Every view averages its own light over frames as well, with weight temporal_alpha, as in the paper. The red
-    /// route does so anyway.
+    /// Every view averages its own light over frames as well, with weight temporal_alpha, as in the paper.
+    /// Denoised views do so anyway.
     bool accumulate_views = false;
-    Route route = Route::kGreen;
+    DenoisedImages denoised_images = DenoisedImages::kSource;
     /// Reference mode: while nothing moves, frames are averaged without limits and without denoiser.
     bool accumulate = false;
     ToneMap tone_map = ToneMap::kClampSrgb;

@@ -25,18 +25,36 @@ std::optional<std::string> grid_problem(const ViewGrid& grid) {
     return std::nullopt;
 }
 
-std::optional<ViewGrid> parse_grid(const std::string& text) {
-    ViewGrid grid;
+namespace {
+
+/// Reads two numbers with an x between them.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_product(const std::string& text) {
+    std::pair<std::uint32_t, std::uint32_t> factors;
     const char* const end = text.data() + text.size();
-    const auto rows = std::from_chars(text.data(), end, grid.rows);
-    if (rows.ec != std::errc{} || rows.ptr == end || (*rows.ptr != 'x' && *rows.ptr != 'X')) {
+    const auto first = std::from_chars(text.data(), end, factors.first);
+    if (first.ec != std::errc{} || first.ptr == end || (*first.ptr != 'x' && *first.ptr != 'X')) {
         return std::nullopt;
     }
-    const auto cols = std::from_chars(rows.ptr + 1, end, grid.cols);
-    if (cols.ec != std::errc{} || cols.ptr != end) {
+    const auto second = std::from_chars(first.ptr + 1, end, factors.second);
+    return second.ec == std::errc{} && second.ptr == end ? std::optional(factors) : std::nullopt;
+}
+
+} // namespace
+
+std::optional<ViewGrid> parse_grid(const std::string& text) {
+    const auto factors = parse_product(text);
+    if (!factors) {
         return std::nullopt;
     }
+    ViewGrid grid;
+    grid.rows = factors->first;
+    grid.cols = factors->second;
     return grid;
+}
+
+std::optional<glm::uvec2> parse_size(const std::string& text) {
+    const auto factors = parse_product(text);
+    return factors ? std::optional(glm::uvec2(factors->first, factors->second)) : std::nullopt;
 }
 
 LatticePosition lattice_position(const ViewGrid& grid, std::uint32_t row, std::uint32_t col) {

@@ -59,6 +59,9 @@ std::optional<std::string> grid_problem(const ViewGrid& grid);
 /// Reads "4x4", "1x45". Empty if malformed; does not check limits.
 std::optional<ViewGrid> parse_grid(const std::string& text);
 
+/// Reads "640x360": width and height, pixels. Empty if malformed; does not check limits.
+std::optional<glm::uvec2> parse_size(const std::string& text);
+
 /// Lattice position of view (row, col). Row-major order everywhere.
 LatticePosition lattice_position(const ViewGrid& grid, std::uint32_t row, std::uint32_t col);
 std::vector<LatticePosition> lattice_positions(const ViewGrid& grid);

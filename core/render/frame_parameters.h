@@ -22,9 +22,9 @@ inline std::uint32_t path_bits(const RenderSettings& settings) {
            (settings.sampler == Sampler::kZSobol ? shared::kPathScreenSampler : 0U);
 }
 
-/// The red route: views are denoised, not the source. An average of still frames needs no denoiser.
+/// Whether views are denoised rather than the source. An average of still frames needs no denoiser.
 inline bool denoises_views(const FrameHeader& header) {
-    return header.settings.route == Route::kRed && header.still_frames == 0;
+    return header.settings.denoised_images == DenoisedImages::kViews && header.still_frames == 0;
 }
 /// Views are averaged over time or denoised themselves.
 inline bool filters_views(const FrameHeader& header) {
@@ -35,7 +35,7 @@ inline bool filters_views(const FrameHeader& header) {
 /// source is denoised by SVGF+ and each kind of light has a sample of its own.
 inline bool keeps_punctual_apart(const FrameHeader& header) {
     const RenderSettings& settings = header.settings;
-    return settings.denoiser == Denoiser::kSvgfPlus && settings.route == Route::kGreen &&
+    return settings.denoiser == Denoiser::kSvgfPlus && settings.denoised_images == DenoisedImages::kSource &&
            settings.next_event_estimation && settings.light_sampling.each_kind;
 }
 

@@ -24,7 +24,7 @@ std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t vie
 }
 
 std::uint64_t GridRenderer::bytes_per_pixel(const RenderSettings& settings) {
-    const bool has_filter = settings.route == Route::kRed || settings.accumulate_views;
+    const bool has_filter = settings.denoised_images == DenoisedImages::kViews || settings.accumulate_views;
     return kBytesToRender + (has_filter ? ViewFilter::bytes_per_pixel(settings) : 0);
 }
 

@@ -3,49 +3,9 @@
 
 #include "core/gpu/raster_pipeline.h"
 #include "core/scene/gpu_scene.h"
+#include "shaders/kernel_ids.h" // KernelId: one for each of shaders/*.comp
 
 namespace fieldcast::render {
-
-/// The embedded kernels (shaders/*.comp).
-enum class KernelId {
-    kBmfrEvaluate,
-    kBmfrFit,
-    kCascadeHoles,
-    kCountHoles,
-    kFilterHoles,
-    kFilterPunctual,
-    kFindLayers,
-    kFinishList,
-    kInterleaveSource,
-    kKeepHoles,
-    kLimitHistory,
-    kListGroups,
-    kListHoles,
-    kMergeLight,
-    kNameTriangles,
-    kPackSource,
-    kReflectViews,
-    kReproject,
-    kScanHoles,
-    kShadeHoles,
-    kShadeViews,
-    kSourceSurfaces,
-    kStartHoles,
-    kSvgfAtrous,
-    kSvgfVariance,
-    kTemporal,
-    kToneMap,
-    kTraceHoles,
-    kCompositeLayers,
-    kTraceReference,
-    kTraceSource,
-    kVisibility,
-    kWarpBounds,
-    kWarpFill,
-    kWarpLink,
-    kWarpUnpack,
-    kWarpViews,
-};
 
 /// The embedded pairs of shaders that draw (shaders/*.vert, *.frag).
 enum class RasterId { kDrawBlend, kDrawVisibility };

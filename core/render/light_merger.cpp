@@ -13,7 +13,7 @@ LightMerger::LightMerger(const gpu::Device& device, const scene::GpuScene& scene
 
 Plane LightMerger::merge(const SourcePlanes& planes, const SourceSurfaces& surfaces, std::uint64_t cameras) {
     const Camera widened = planes.camera();
-    Plane plane{PlaneSemantic::kTotalLight, source_format(PlaneSemantic::kTotalLight), widened.width_px,
+    Plane plane{PlaneSemantic::kTotalLight, usual_format(PlaneSemantic::kTotalLight), widened.width_px,
                 plane_height(planes.header(), PlaneSemantic::kTotalLight), {}};
     plane.bytes.resize(plane_bytes(plane.format, plane.width_px, plane.height_px));
     if (light_.size_bytes() < plane.bytes.size()) {

@@ -18,10 +18,9 @@ std::size_t index_of(PlaneSemantic semantic) {
 
 bool fits(const Plane& plane, const FrameHeader& header) {
     const Camera widened = with_guard_band(header.source, header.guard_band);
-    const bool is_coarse_normal = plane.semantic == PlaneSemantic::kNormal && plane.format == PlaneFormat::kOct2x8;
     const bool is_known = plane.semantic == PlaneSemantic::kTotalLight ||
                           std::ranges::find(kSourceSemantics, plane.semantic) != kSourceSemantics.end();
-    return is_known && (is_coarse_normal || plane.format == source_format(plane.semantic)) &&
+    return is_known && may_have_format(plane.semantic, plane.format) &&
            plane.width_px == widened.width_px && plane.height_px == plane_height(header, plane.semantic) &&
            plane.bytes.size() == plane_bytes(plane.format, plane.width_px, plane.height_px);
 }
@@ -37,30 +36,6 @@ std::vector<std::uint32_t> words_of(const Plane& plane) {
 }
 
 } // namespace
-
-PlaneFormat source_format(PlaneSemantic semantic) {
-    switch (semantic) {
-    case PlaneSemantic::kDiffuse:
-    case PlaneSemantic::kSpecular:
-    case PlaneSemantic::kTotalLight:
-        return PlaneFormat::kR11G11B10F;
-    case PlaneSemantic::kDepth:
-        return PlaneFormat::kF32;
-    case PlaneSemantic::kNormal:
-        return PlaneFormat::kOct2x16;
-    case PlaneSemantic::kId:
-        return PlaneFormat::kU32;
-    case PlaneSemantic::kMaterial:
-        return PlaneFormat::kRg8;
-    case PlaneSemantic::kColour:
-    case PlaneSemantic::kResidualColour:
-        return PlaneFormat::kRgb8;
-    case PlaneSemantic::kInverseDepth:
-    case PlaneSemantic::kResidualInverseDepth:
-        return PlaneFormat::kR16;
-    }
-    return PlaneFormat::kU32;
-}
 
 SourcePlanes::SourcePlanes(const gpu::Device& device) : device_(device) {}
 
@@ -81,7 +56,7 @@ SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const 
     SourceFrame frame{header_, {}};
     const Camera widened = camera();
     for (const PlaneSemantic semantic : wanted) {
-        Plane plane{semantic, source_format(semantic), widened.width_px, plane_height(header_, semantic), {}};
+        Plane plane{semantic, usual_format(semantic), widened.width_px, plane_height(header_, semantic), {}};
         plane.bytes.resize(static_cast<std::size_t>(plane.width_px) * plane.height_px * 4);
         gpu::read_buffer(device_, planes_[index_of(semantic)], plane.bytes);
         if (plane.format == PlaneFormat::kRg8) { // from the low half of each word

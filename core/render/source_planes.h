@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/gpu/buffer.h"
 #include "core/lightfield/source_frame.h"
+#include "core/lightfield/vocabulary.h"
 
 #include <array>
 #include <span>
@@ -14,9 +15,6 @@ namespace fieldcast::render {
 inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular,
                                              PlaneSemantic::kDepth,   PlaneSemantic::kNormal,
                                              PlaneSemantic::kId,      PlaneSemantic::kMaterial};
-
-/// The format in which a source plane is kept on the device and on the wire.
-PlaneFormat source_format(PlaneSemantic semantic);
 
 /// A SourceFrame on the device, in wire precision: what views are made from on both sides.
 /// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). Every plane has all pages (lightfield's

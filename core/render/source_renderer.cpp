@@ -134,7 +134,7 @@ void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
                              .settings = header.settings});
 }
 
-// The red route's light stays as it was traced; only that of layers, which no view denoises, is filtered here.
+// Where views are denoised, the source's light stays as it was traced: only layers, which no view denoises, are filtered.
 void SourceRenderer::State::record_pack() {
     const std::uint32_t pages = planes.page_count();
     const std::uint32_t noisy_pages = denoises_views(planes.header()) ? planes.source_count() : 0;

@@ -22,7 +22,7 @@ constexpr std::uint64_t kBytesToFit = sizeof(shared::HistoryTaps) + (2 * sizeof(
 } // namespace
 
 std::uint64_t ViewFilter::bytes_per_pixel(const RenderSettings& settings) {
-    const bool denoises = settings.route == Route::kRed && settings.denoiser != Denoiser::kNone;
+    const bool denoises = settings.denoised_images == DenoisedImages::kViews && settings.denoiser != Denoiser::kNone;
     return kBytesToAccumulate + (denoises ? kBytesToDenoise : 0) +
            (denoises && settings.denoiser == Denoiser::kBmfr ? kBytesToFit : 0);
 }
@@ -48,7 +48,7 @@ void ViewFilter::check(const gpu::Device& device, const RenderSettings& settings
         throw UserError(std::to_string(request.positions.size()) + " views of " + std::to_string(request.width_px) +
                         "x" + std::to_string(request.height_px) + " are too many for " + device.info().name +
                         " to average or denoise each: it has room for " + std::to_string(most) +
-                        " pixels; take fewer or smaller views, or the green route without averages of views");
+                        " pixels; take fewer or smaller views, or denoise the source and do not average views");
     }
 }
 
@@ -77,7 +77,7 @@ shared::ViewLight ViewFilter::light() const {
     return {filter_.geometry().address(), filter_.noisy_diffuse().address(), filter_.noisy_specular().address()};
 }
 
-// The green route averages only: its light was denoised in the source.
+// Averages only where the light was denoised in the source.
 FilterFrame ViewFilter::make_frame(const FrameHeader& header, const Targets& targets) const {
     FilterFrame frame{.cameras = cameras_.address(),
                       .visibility = targets.visibility.address(),

@@ -9,7 +9,7 @@
 
 namespace fieldcast::render {
 
-/// Averages over time and, on the red route, denoises the light of views before their own materials come in
+/// Averages over time and, with DenoisedImages::kViews, denoises the light of views before their own materials come in
 /// (docs/lightfield.md). Every view is a page, as every source is one of the source's filter. Keeps the history of one
 /// set of views; another set starts anew.
 class ViewFilter {

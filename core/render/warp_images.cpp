@@ -17,7 +17,7 @@ Decoded<const Plane*> find_plane(const SourceFrame& frame, PlaneSemantic semanti
     if (plane == nullptr) {
         return decode_error(std::string("frame without plane ") + name);
     }
-    const bool fits = plane->format == source_format(semantic) &&
+    const bool fits = plane->format == usual_format(semantic) &&
                       plane->width_px == plane_width(frame.header, semantic) &&
                       plane->height_px == plane_height(frame.header, semantic) &&
                       plane->bytes.size() == plane_bytes(plane->format, plane->width_px, plane->height_px);

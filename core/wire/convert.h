@@ -45,17 +45,13 @@ DiscardCounts from_proto(const v1::DiscardCounts& message);
 void to_proto(const ServerTimes& times, v1::ServerTimes& message);
 ServerTimes from_proto(const v1::ServerTimes& message);
 
-v1::Codec to_proto(codec::CodecId codec);
+v1::Codec to_proto(Codec codec);
 v1::PlaneSemantic to_proto(PlaneSemantic semantic);
 v1::PlaneFormat to_proto(PlaneFormat format);
-std::optional<codec::CodecId> from_proto(v1::Codec codec);
+v1::DeliveryMode to_proto(DeliveryMode mode);
+std::optional<Codec> from_proto(v1::Codec codec);
 std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic);
 std::optional<PlaneFormat> from_proto(v1::PlaneFormat format);
-
-/// The format in which planes of that meaning are sent unless another one was agreed on: that of source frames.
-PlaneFormat wire_format(PlaneSemantic semantic);
-
-/// Whether planes of that meaning may be sent in that format.
-bool is_wire_format(PlaneSemantic semantic, PlaneFormat format);
+std::optional<DeliveryMode> from_proto(v1::DeliveryMode mode);
 
 } // namespace fieldcast::wire

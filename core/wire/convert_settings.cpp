@@ -14,55 +14,9 @@ namespace {
 constexpr std::uint32_t kMaxSamplesPerPixel = 65536;
 constexpr std::uint32_t kMaxBounces = 256;
 
-v1::Denoiser denoiser_to_proto(Denoiser denoiser) {
-    switch (denoiser) {
-    case Denoiser::kNone:
-        return v1::DENOISER_NONE;
-    case Denoiser::kSvgf:
-        return v1::DENOISER_SVGF;
-    case Denoiser::kSvgfPlus:
-        return v1::DENOISER_SVGF_PLUS;
-    case Denoiser::kBmfr:
-        return v1::DENOISER_BMFR;
-    }
-    return v1::DENOISER_UNSPECIFIED;
-}
-
-std::optional<Denoiser> denoiser_from_proto(int number) {
-    switch (number) {
-    case v1::DENOISER_NONE:
-        return Denoiser::kNone;
-    case v1::DENOISER_SVGF:
-        return Denoiser::kSvgf;
-    case v1::DENOISER_SVGF_PLUS:
-        return Denoiser::kSvgfPlus;
-    case v1::DENOISER_BMFR:
-        return Denoiser::kBmfr;
-    default: // any number may stand in a message
-        return std::nullopt;
-    }
-}
-
-v1::Route route_to_proto(Route route) {
-    switch (route) {
-    case Route::kGreen:
-        return v1::ROUTE_GREEN;
-    case Route::kRed:
-        return v1::ROUTE_RED;
-    }
-    return v1::ROUTE_UNSPECIFIED;
-}
-
-std::optional<Route> route_from_proto(int number) {
-    switch (number) {
-    case v1::ROUTE_UNSPECIFIED: // as senders wrote before there were two
-    case v1::ROUTE_GREEN:
-        return Route::kGreen;
-    case v1::ROUTE_RED:
-        return Route::kRed;
-    default: // any number may stand in a message
-        return std::nullopt;
-    }
+/// Numbers of our enumerations are those of the messages (tests/wire/vocabulary_test.cpp).
+template <class Enum> std::optional<Enum> known(int number) {
+    return number < 0 ? std::nullopt : from_number<Enum>(static_cast<std::uint64_t>(number));
 }
 
 v1::ToneMap tone_map_to_proto(ToneMap tone_map) {
@@ -156,7 +110,7 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     message.set_max_bounces(settings.max_bounces);
     message.set_next_event_estimation(settings.next_event_estimation);
     message.set_indirect_clamp(settings.indirect_clamp);
-    message.set_denoiser(denoiser_to_proto(settings.denoiser));
+    message.set_denoiser(static_cast<v1::Denoiser>(settings.denoiser));
     message.set_temporal_accumulation(settings.temporal_accumulation);
     message.set_temporal_alpha(settings.temporal_alpha);
     message.set_tone_map(tone_map_to_proto(settings.tone_map));
@@ -174,15 +128,16 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
     message.set_history_light(settings.history_light);
     message.set_sampler(settings.sampler == Sampler::kZSobol ? v1::SAMPLER_Z_SOBOL : v1::SAMPLER_SOBOL);
     message.set_accumulate_views(settings.accumulate_views);
-    message.set_route(route_to_proto(settings.route));
+    message.set_denoised_images(static_cast<v1::DenoisedImages>(settings.denoised_images));
 }
 
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
-    const auto denoiser = denoiser_from_proto(message.denoiser());
+    const auto denoiser = known<Denoiser>(message.denoiser());
     const auto tone_map = tone_map_from_proto(message.tone_map());
-    const auto route = route_from_proto(message.route());
-    if (!denoiser || !tone_map || !route) {
-        return decode_error("settings: unknown denoiser, tone map or route");
+    const bool is_set = message.denoised_images() != v1::DENOISED_IMAGES_UNSPECIFIED; // old senders knew one value
+    const auto images = is_set ? known<DenoisedImages>(message.denoised_images()) : DenoisedImages::kSource;
+    if (!denoiser || !tone_map || !images) {
+        return decode_error("settings: unknown denoiser, tone map or denoised images");
     }
     RenderSettings settings;
     settings.samples_per_pixel = message.samples_per_pixel();
@@ -211,7 +166,7 @@ Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     settings.history_light = message.history_light();
     settings.sampler = message.sampler() == v1::SAMPLER_Z_SOBOL ? Sampler::kZSobol : Sampler::kSobol;
     settings.accumulate_views = message.accumulate_views();
-    settings.route = *route;
+    settings.denoised_images = *images;
     if (const auto checked = check_floats(settings); !checked) {
         return tl::unexpected(checked.error());
     }
@@ -244,8 +199,8 @@ ServerTimes from_proto(const v1::ServerTimes& message) {
             message.encode_end_ns(),   message.send_begin_ns(),   message.send_end_ns()};
 }
 
-v1::Codec to_proto(codec::CodecId codec) {
-    return static_cast<v1::Codec>(codec); // same numbers, checked below
+v1::Codec to_proto(Codec codec) {
+    return static_cast<v1::Codec>(codec);
 }
 
 v1::PlaneSemantic to_proto(PlaneSemantic semantic) {
@@ -256,79 +211,24 @@ v1::PlaneFormat to_proto(PlaneFormat format) {
     return static_cast<v1::PlaneFormat>(format);
 }
 
-std::optional<codec::CodecId> from_proto(v1::Codec codec) {
-    return codec < 0 ? std::nullopt : codec::codec_from_number(static_cast<std::uint64_t>(codec));
+v1::DeliveryMode to_proto(DeliveryMode mode) {
+    return static_cast<v1::DeliveryMode>(mode);
+}
+
+std::optional<Codec> from_proto(v1::Codec codec) {
+    return known<Codec>(codec);
 }
 
 std::optional<PlaneSemantic> from_proto(v1::PlaneSemantic semantic) {
-    const bool is_known = (semantic >= v1::PLANE_SEMANTIC_DIFFUSE && semantic <= v1::PLANE_SEMANTIC_COLOUR) ||
-                          (semantic >= v1::PLANE_SEMANTIC_INVERSE_DEPTH &&
-                           semantic <= v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH) ||
-                          semantic == v1::PLANE_SEMANTIC_TOTAL_LIGHT;
-    return is_known ? std::optional(static_cast<PlaneSemantic>(semantic)) : std::nullopt;
+    return known<PlaneSemantic>(semantic);
 }
 
 std::optional<PlaneFormat> from_proto(v1::PlaneFormat format) {
-    const bool is_known = (format >= v1::PLANE_FORMAT_R11G11B10F && format <= v1::PLANE_FORMAT_RGB8) ||
-                          format == v1::PLANE_FORMAT_R16 || format == v1::PLANE_FORMAT_OCT2X8;
-    return is_known ? std::optional(static_cast<PlaneFormat>(format)) : std::nullopt;
+    return known<PlaneFormat>(format);
 }
 
-PlaneFormat wire_format(PlaneSemantic semantic) {
-    switch (semantic) {
-    case PlaneSemantic::kDiffuse:
-    case PlaneSemantic::kSpecular:
-    case PlaneSemantic::kTotalLight:
-        return PlaneFormat::kR11G11B10F;
-    case PlaneSemantic::kDepth:
-        return PlaneFormat::kF32;
-    case PlaneSemantic::kNormal:
-        return PlaneFormat::kOct2x16;
-    case PlaneSemantic::kId:
-        return PlaneFormat::kU32;
-    case PlaneSemantic::kMaterial:
-        return PlaneFormat::kRg8;
-    case PlaneSemantic::kColour:
-    case PlaneSemantic::kResidualColour:
-        return PlaneFormat::kRgb8;
-    case PlaneSemantic::kInverseDepth:
-    case PlaneSemantic::kResidualInverseDepth:
-        return PlaneFormat::kR16;
-    }
-    return PlaneFormat::kRgb8;
+std::optional<DeliveryMode> from_proto(v1::DeliveryMode mode) {
+    return known<DeliveryMode>(mode);
 }
-
-bool is_wire_format(PlaneSemantic semantic, PlaneFormat format) {
-    const bool is_coarse_normal = semantic == PlaneSemantic::kNormal && format == PlaneFormat::kOct2x8;
-    return is_coarse_normal || format == wire_format(semantic);
-}
-
-namespace {
-
-constexpr bool same(auto ours, int theirs) {
-    return static_cast<int>(ours) == theirs;
-}
-
-static_assert(same(codec::CodecId::kRaw, v1::CODEC_RAW) &&
-              same(codec::CodecId::kZstdFiltered, v1::CODEC_ZSTD_FILTERED) &&
-              same(codec::CodecId::kJpeg, v1::CODEC_JPEG) && same(codec::CodecId::kH264, v1::CODEC_H264));
-static_assert(same(PlaneSemantic::kDiffuse, v1::PLANE_SEMANTIC_DIFFUSE) &&
-              same(PlaneSemantic::kSpecular, v1::PLANE_SEMANTIC_SPECULAR) &&
-              same(PlaneSemantic::kDepth, v1::PLANE_SEMANTIC_DEPTH) &&
-              same(PlaneSemantic::kNormal, v1::PLANE_SEMANTIC_NORMAL) &&
-              same(PlaneSemantic::kId, v1::PLANE_SEMANTIC_ID) &&
-              same(PlaneSemantic::kMaterial, v1::PLANE_SEMANTIC_MATERIAL) &&
-              same(PlaneSemantic::kColour, v1::PLANE_SEMANTIC_COLOUR) &&
-              same(PlaneSemantic::kInverseDepth, v1::PLANE_SEMANTIC_INVERSE_DEPTH) &&
-              same(PlaneSemantic::kResidualColour, v1::PLANE_SEMANTIC_RESIDUAL_COLOUR) &&
-              same(PlaneSemantic::kResidualInverseDepth, v1::PLANE_SEMANTIC_RESIDUAL_INVERSE_DEPTH) &&
-              same(PlaneSemantic::kTotalLight, v1::PLANE_SEMANTIC_TOTAL_LIGHT));
-static_assert(same(PlaneFormat::kR11G11B10F, v1::PLANE_FORMAT_R11G11B10F) &&
-              same(PlaneFormat::kF32, v1::PLANE_FORMAT_F32) && same(PlaneFormat::kOct2x16, v1::PLANE_FORMAT_OCT2X16) &&
-              same(PlaneFormat::kU32, v1::PLANE_FORMAT_U32) && same(PlaneFormat::kRg8, v1::PLANE_FORMAT_RG8) &&
-              same(PlaneFormat::kRgb8, v1::PLANE_FORMAT_RGB8) && same(PlaneFormat::kR16, v1::PLANE_FORMAT_R16) &&
-              same(PlaneFormat::kOct2x8, v1::PLANE_FORMAT_OCT2X8));
-
-} // namespace
 
 } // namespace fieldcast::wire

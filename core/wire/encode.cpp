@@ -131,7 +131,7 @@ void encode_predicted(const Views& views, EncodedViews& encoded, std::vector<Job
 } // namespace
 
 PlaneFormat format_of(const PlaneChoice& choice) {
-    return choice.format.value_or(wire_format(choice.semantic));
+    return choice.format.value_or(usual_format(choice.semantic));
 }
 
 std::uint64_t EncodedPlane::encoded_bytes() const {
@@ -196,7 +196,7 @@ EncodedViews encode_views(const Views& views, const ViewFormat& format, const Ke
         jobs.push_back({&view.image, fitting(find_view(key.views, view.position), view.image), key.is_optional,
                         views.header.settings.exposure, &entry->second.image});
     }
-    if (format.encoding.codec == codec::CodecId::kH264) {
+    if (row_of(format.encoding.codec).predicts_views) {
         encode_predicted(views, encoded, jobs, pool);
     } else {
         encode_all(jobs, pool);

@@ -58,7 +58,7 @@ struct KeyFrame {
 struct PlaneChoice {
     PlaneSemantic semantic = PlaneSemantic::kColour;
     codec::Encoding encoding{};
-    std::optional<PlaneFormat> format{}; ///< empty: wire_format(); never names that
+    std::optional<PlaneFormat> format{}; ///< empty: usual_format(); never names that
 
     auto operator<=>(const PlaneChoice&) const = default;
 };

@@ -86,7 +86,7 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
         return tl::unexpected(parts.error());
     }
     frame->parts = std::move(*parts);
-    if (frame->set && frame->parts.front().codec == codec::CodecId::kH264) {
+    if (frame->set && row_of(frame->parts.front().codec).predicts_views) {
         frame->base_part = wire::base_part(frame->set->grid);
     }
     return frame;

@@ -29,11 +29,11 @@ Decoded<Part> part_from_proto(const v1::PlaneHeader& message, const FrameHeader&
     if (!semantic || !format || !codec) {
         return decode_error("header.planes: unknown semantic, format or codec");
     }
-    if (!is_wire_format(*semantic, *format)) {
+    if (!may_have_format(*semantic, *format)) {
         return decode_error("header.planes: semantic " + std::to_string(message.semantic()) +
                             " is not sent in format " + std::to_string(message.format()));
     }
-    if (!codec::fits(*codec, *format)) {
+    if (!carries(*codec, *format)) {
         return decode_error("header.planes: codec " + std::to_string(message.codec()) + " is not for format " +
                             std::to_string(message.format()));
     }

@@ -12,7 +12,7 @@ struct Part {
     PlaneFormat format = PlaneFormat::kRgb8;
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
-    codec::CodecId codec = codec::CodecId::kZstdFiltered;
+    Codec codec = Codec::kZstdFiltered;
     std::uint32_t next_row = 0; ///< rows above have been received
     Plane plane{};
 };

@@ -87,8 +87,8 @@ void ChannelList::start_replays(const ops::Config& config, metrics::Registry& re
         add_feed(replays_.back()->feed());
         const feed::ChannelInfo& info = feeds_.back()->info();
         std::string forms;
-        for (const feed::Wish& wish : info.recorded) {
-            forms += (forms.empty() ? "" : "; ") + feed::to_text(wish);
+        for (const feed::Selection& selection : info.recorded) {
+            forms += (forms.empty() ? "" : "; ") + feed::to_text(selection);
         }
         log::info("replay ready", {{"channel", info.name},
                                    {"file", setup.file.string()},
@@ -104,9 +104,9 @@ void ChannelList::start_recorders(const ops::Config& config, metrics::Registry& 
         const auto found = std::ranges::find_if(
             feeds_, [&](const auto& feed) { return record.channel.empty() || feed->info().name == record.channel; });
         FC_ASSERT(found != feeds_.end(), "the configuration names a channel that is not there");
-        recording::RecorderSetup setup{.file = record.file, .wishes = {}, .max_frames = config.record_frames};
-        for (const recording::Form& form : config.record_forms) {
-            setup.wishes.push_back(recording::wish_of(form, (*found)->info()));
+        recording::RecorderSetup setup{.file = record.file, .selections = {}, .max_frames = config.record_frames};
+        for (const recording::RecordedForm& form : config.record_forms) {
+            setup.selections.push_back(recording::selection_of(form, (*found)->info()));
         }
         recorders_.push_back(std::make_unique<recording::Recorder>(*found, std::move(setup), registry));
     }

@@ -7,6 +7,7 @@
 #include "core/scene/bundle.h"
 #include "core/scene/gltf_loader.h"
 #include "server/channel/frame_renderer.h"
+#include "server/channel/viewpoint.h"
 
 #include <algorithm>
 
@@ -42,15 +43,16 @@ void FrameRenderer::load(const ops::ChannelChoice& channel) {
     scene::LoadOptions options;
     options.environment = config_.environment;
     options.sky = config_.sky.value_or(options.sky);
-    scene_ = std::make_shared<const scene::Scene>(scene::load_scene(channel.scene, options));
-    for (const std::string& warning : scene_->warnings) {
+    scene::Scene scene = scene::load_scene(channel.scene, options);
+    for (const std::string& warning : scene.warnings) {
         log::warn("scene", {{"channel", info_.name}, {"warning", warning}});
     }
-    camera_node_ = scene::find_camera(*scene_, config_.camera);
-    if (camera_node_ == nullptr) {
-        throw UserError(channel.scene.string() +
-                        (config_.camera.empty() ? ": has no camera" : ": has no camera '" + config_.camera + "'"));
-    }
+    const Viewpoint viewpoint = settle_viewpoint(scene, config_, info_.name);
+    scene_ = std::make_shared<const scene::Scene>(std::move(scene));
+    camera_node_ = &scene_->cameras[viewpoint.camera];
+    info_.largest_grid = config_.largest_grid;
+    info_.largest_grid.geometry = {.spacing_m = glm::vec2(viewpoint.spacing_m),
+                                   .convergence_m = viewpoint.convergence_m};
     info_.scene_hash = scene_->hash;
     info_.bundle = std::make_shared<const std::vector<std::byte>>(scene::make_bundle(channel.scene, options));
     make_renderers(scene::choose_traversal(device_, config_.traversal),
@@ -77,17 +79,12 @@ void FrameRenderer::settle_lattice(const ops::ChannelChoice& choice) {
     info_.steering_lease = config_.steering_lease;
     info_.max_view_pixels = config_.max_channel_pixels;
     info_.lossy_quality = static_cast<std::uint8_t>(config_.lossy_quality);
-    info_.largest_grid = config_.largest_grid;
-    info_.largest_grid.geometry = config_.lattice;
-    constexpr float kDefaultSpacing_m = 0.03F;
-    const float spacing_m = config_.spacing_m.value_or(camera_node_->spacing_m.value_or(kDefaultSpacing_m));
-    info_.largest_grid.geometry.spacing_m = glm::vec2(spacing_m);
 }
 
 // Views that average or denoise their own light need room on the device.
 void FrameRenderer::limit_views() {
     info_.bytes_per_view_pixel = render::GridRenderer::bytes_per_pixel(settings_);
-    if (settings_.route == Route::kGreen && !settings_.accumulate_views) {
+    if (settings_.denoised_images == DenoisedImages::kSource && !settings_.accumulate_views) {
         return;
     }
     render::ViewFilter::check(device_, settings_,

@@ -15,7 +15,7 @@ feed::Demand whole_grid(const feed::ChannelInfo& info, bool wants_source) {
     feed::Demand demand;
     if (wants_source) {
         for (const PlaneSemantic semantic : render::kSourceSemantics) {
-            demand.planes.push_back({semantic, codec::CodecId::kRaw});
+            demand.planes.push_back({semantic, Codec::kRaw});
         }
     }
     const wire::ViewFormat format{.geometry = info.largest_grid.geometry,

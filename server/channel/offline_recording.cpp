@@ -12,8 +12,8 @@ bool record_offline(const gpu::Device& device, const ops::Config& config, const 
     feed::ChannelInfo info = renderer.info();
     feed::Demand demand;
     demand.needs_alone = true; // clients join anywhere
-    for (const recording::Form& form : config.record_forms) {
-        info.recorded.push_back(recording::wish_of(form, info));
+    for (const recording::RecordedForm& form : config.record_forms) {
+        info.recorded.push_back(recording::selection_of(form, info));
         feed::add(demand, info.recorded.back());
     }
     recording::RecordingWriter writer(job.out, info);

@@ -16,7 +16,7 @@ feed::Demand four_views(const feed::ChannelInfo& info) {
     ViewGrid grid = info.largest_grid;
     grid.rows = grid.cols = 2;
     feed::Demand demand;
-    feed::add(demand, feed::ViewsWish{.format = {.geometry = grid.geometry,
+    feed::add(demand, feed::ViewSelection{.format = {.geometry = grid.geometry,
                                                  .fovy_rad = info.fovy_rad,
                                                  .width_px = info.source_width_px,
                                                  .height_px = info.source_height_px,

@@ -3,7 +3,7 @@
 
 #include "core/lightfield/view_grid.h"
 #include "server/feed/view_memory.h"
-#include "server/feed/wish.h"
+#include "server/feed/selection.h"
 
 #include <array>
 #include <chrono>
@@ -49,7 +49,7 @@ struct ChannelInfo {
     std::uint64_t max_view_pixels = 0;                    ///< that are encoded for a frame, over all clients
     std::uint64_t bytes_per_view_pixel = 0;               ///< that views take of the device's memory
     std::shared_ptr<ViewMemory> view_memory{};            ///< what all channels may take; null: no limit
-    std::vector<Wish> recorded{}; ///< not empty: the channel is a recording of these and can show nothing else
+    std::vector<Selection> recorded{}; ///< not empty: the channel is a recording of these and can show nothing else
 };
 
 } // namespace fieldcast::feed

@@ -7,27 +7,27 @@ namespace fieldcast::feed {
 
 namespace {
 
-bool covers(const EncodedFrame& frame, const PlanesWish& wish) {
-    return frame.source.has_value() && std::ranges::all_of(wish.choices, [&](const wire::PlaneChoice& choice) {
+bool covers(const EncodedFrame& frame, const PlaneSelection& selection) {
+    return frame.source.has_value() && std::ranges::all_of(selection.choices, [&](const wire::PlaneChoice& choice) {
                return frame.source->find(choice) != nullptr;
            });
 }
 
-bool covers(const EncodedFrame& frame, const ViewsWish& wish) {
-    const wire::EncodedViews* const views = find_views(frame, wish.format);
-    return views != nullptr && std::ranges::all_of(lattice_positions(wish.grid), [&](LatticePosition position) {
+bool covers(const EncodedFrame& frame, const ViewSelection& selection) {
+    const wire::EncodedViews* const views = find_views(frame, selection.format);
+    return views != nullptr && std::ranges::all_of(lattice_positions(selection.grid), [&](LatticePosition position) {
                return views->views.contains(position);
            });
 }
 
-bool stands_alone(const EncodedFrame& frame, const PlanesWish& wish) {
+bool stands_alone(const EncodedFrame& frame, const PlaneSelection& selection) {
     return std::ranges::all_of(
-        wish.choices, [&](const wire::PlaneChoice& choice) { return frame.source->find(choice)->stands_alone(); });
+        selection.choices, [&](const wire::PlaneChoice& choice) { return frame.source->find(choice)->stands_alone(); });
 }
 
-bool stands_alone(const EncodedFrame& frame, const ViewsWish& wish) {
-    const wire::EncodedViews& views = *find_views(frame, wish.format);
-    return std::ranges::all_of(lattice_positions(wish.grid),
+bool stands_alone(const EncodedFrame& frame, const ViewSelection& selection) {
+    const wire::EncodedViews& views = *find_views(frame, selection.format);
+    return std::ranges::all_of(lattice_positions(selection.grid),
                                [&](LatticePosition position) { return views.views.at(position).image.stands_alone(); });
 }
 
@@ -38,12 +38,12 @@ const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::View
     return found == frame.views.end() ? nullptr : &*found;
 }
 
-bool covers(const EncodedFrame& frame, const Wish& wish) {
-    return std::visit([&](const auto& kind) { return covers(frame, kind); }, wish);
+bool covers(const EncodedFrame& frame, const Selection& selection) {
+    return std::visit([&](const auto& kind) { return covers(frame, kind); }, selection);
 }
 
-bool stands_alone(const EncodedFrame& frame, const Wish& wish) {
-    return std::visit([&](const auto& kind) { return stands_alone(frame, kind); }, wish);
+bool stands_alone(const EncodedFrame& frame, const Selection& selection) {
+    return std::visit([&](const auto& kind) { return stands_alone(frame, kind); }, selection);
 }
 
 } // namespace fieldcast::feed

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/wire/chunks.h"
-#include "server/feed/wish.h"
+#include "server/feed/selection.h"
 
 #include <chrono>
 #include <memory>
@@ -26,10 +26,10 @@ using FramePtr = std::shared_ptr<const EncodedFrame>;
 /// The views of that format; null if absent.
 const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::ViewFormat& format);
 
-/// Whether everything in `wish` is in `frame`. A frame begun before a client changed its wish may lack something.
-bool covers(const EncodedFrame& frame, const Wish& wish);
+/// Whether everything in `selection` is in `frame`. A frame begun before a client changed its selection may lack something.
+bool covers(const EncodedFrame& frame, const Selection& selection);
 
-/// Whether a client without the key frame can be given everything in `wish`, which the frame covers.
-bool stands_alone(const EncodedFrame& frame, const Wish& wish);
+/// Whether a client without the key frame can be given everything in `selection`, which the frame covers.
+bool stands_alone(const EncodedFrame& frame, const Selection& selection);
 
 } // namespace fieldcast::feed

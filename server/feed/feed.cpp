@@ -36,15 +36,15 @@ Feed::Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener)
     state_.lock()->held = std::make_unique<HeldViews>(info_.view_memory, info_.bytes_per_view_pixel);
 }
 
-std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t except_id, const Wish& wish) const {
+std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t except_id, const Selection& selection) const {
     Demand demand;
     for (const auto& [id, subscriber] : state.subscribers) {
         if (id != except_id) {
-            add(demand, subscriber.wish);
+            add(demand, subscriber.selection);
         }
     }
     const std::uint64_t of_others = encoded_pixels(demand);
-    add(demand, wish);
+    add(demand, selection);
     const std::uint64_t pixels = encoded_pixels(demand);
     if (pixels == of_others || pixels <= info_.max_view_pixels) {
         auto problem = state.held->want(demand);
@@ -62,17 +62,17 @@ std::uint64_t Feed::encoded_pixels(const Demand& demand) const {
     return demand.view_pixels() + demand.repeated_planes() * plane;
 }
 
-tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
+tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Feed>& feed, const Selection& selection,
                                                         FrameCallback callback, const Pace& pace) {
     auto shared_callback = std::make_shared<const FrameCallback>(std::move(callback));
     std::uint64_t id = 0;
     {
         auto state = feed->state_.lock();
-        if (auto problem = feed->budget_problem(*state, 0, wish)) {
+        if (auto problem = feed->budget_problem(*state, 0, selection)) {
             return tl::unexpected(std::move(*problem));
         }
         id = state->next_id++;
-        state->subscribers.emplace(id, Subscriber{.wish = wish,
+        state->subscribers.emplace(id, Subscriber{.selection = selection,
                                                   .pace = pace,
                                                   .has_room_since = Clock::now(),
                                                   .callback = std::move(shared_callback)});
@@ -82,14 +82,14 @@ tl::expected<Subscription, std::string> Feed::subscribe(const std::shared_ptr<Fe
     return Subscription(feed, id);
 }
 
-std::optional<std::string> Feed::change(std::uint64_t id, const Wish& wish, const Pace& pace) {
+std::optional<std::string> Feed::change(std::uint64_t id, const Selection& selection, const Pace& pace) {
     {
         auto state = state_.lock();
-        if (auto problem = budget_problem(*state, id, wish)) {
+        if (auto problem = budget_problem(*state, id, selection)) {
             return problem;
         }
         Subscriber& subscriber = state->subscribers.at(id);
-        subscriber.wish = wish;
+        subscriber.selection = selection;
         subscriber.pace = pace;
         state->shrunk = Clock::now();
         ++state->changes;
@@ -122,7 +122,7 @@ void Feed::remove(std::uint64_t id) {
     state->subscribers.erase(found);
     Demand left;
     for (const auto& [other, subscriber] : state->subscribers) {
-        add(left, subscriber.wish);
+        add(left, subscriber.selection);
     }
     FC_ASSERT(!state->held->want(left), "less than before is always possible");
     state->shrunk = Clock::now();
@@ -153,7 +153,7 @@ Demand Feed::demand(TimePoint now) {
         demand.is_awaited = demand.is_awaited || (window.from - kAwaited <= now && now <= window.until);
         if (window.contains(now)) {
             subscriber.pace.take(now);
-            add(demand, subscriber.wish);
+            add(demand, subscriber.selection);
             add(demand, subscriber.key_need);
         }
     }

@@ -20,9 +20,9 @@
 // The border between a channel, which makes frames, and the sessions, which send them.
 //
 //     render loop:  feed->wait_for_demand(stop);  demand = feed->demand();  … render, encode …  feed->publish(frame);
-//     session:      subscription = Feed::subscribe(feed, wish, on_frame);   … subscription.change(wish) …
+//     session:      subscription = Feed::subscribe(feed, selection, on_frame);   … subscription.change(selection) …
 //
-// A wish counts for a frame only if its subscriber could take that frame: its pace says that it is due, and it has room.
+// A selection counts for a frame only if its subscriber could take that frame: its pace says that it is due, and it has room.
 namespace fieldcast::feed {
 
 /// Called by the thread that publishes, without any lock held. Must return at once and must not throw. One last call
@@ -61,7 +61,7 @@ public:
 
     /// Refused, with a reason that names the limit, if what is encoded for all subscribers would exceed the pixel
     /// budget, or their views the memory of the device. Whoever wants only what others get is never refused.
-    static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Wish& wish,
+    static tl::expected<Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed, const Selection& selection,
                                                              FrameCallback callback, const Pace& pace = {});
 
     /// What a frame that begins at `now` has to contain. Each call is one frame.
@@ -104,7 +104,7 @@ public:
 private:
     friend class Subscription;
     struct Subscriber {
-        Wish wish;
+        Selection selection;
         KeyNeed key_need = KeyNeed::kAlone;
         Pace pace{};
         Room room{};
@@ -120,13 +120,13 @@ private:
         TimePoint::duration frame_time{}; ///< from the demand for a frame to its publication, lately
         std::uint64_t changes = 0;        ///< of what `wait_for_demand` looks at
         std::unique_ptr<HeldViews> held;  ///< in the device's memory
-        TimePoint shrunk{};               ///< when a wish went or changed
+        TimePoint shrunk{};               ///< when a selection went or changed
     };
 
     std::uint64_t encoded_pixels(const Demand& demand) const;
-    /// Whether `wish` fits besides those of all others but `except_id`; if so, its memory is taken.
-    std::optional<std::string> budget_problem(State& state, std::uint64_t except_id, const Wish& wish) const;
-    std::optional<std::string> change(std::uint64_t id, const Wish& wish, const Pace& pace);
+    /// Whether `selection` fits besides those of all others but `except_id`; if so, its memory is taken.
+    std::optional<std::string> budget_problem(State& state, std::uint64_t except_id, const Selection& selection) const;
+    std::optional<std::string> change(std::uint64_t id, const Selection& selection, const Pace& pace);
     void set_key_need(std::uint64_t id, KeyNeed need);
     void set_room(std::uint64_t id, const Room& room);
     void remove(std::uint64_t id);
@@ -154,9 +154,9 @@ public:
     /// Null after `end` or for a default-constructed one.
     const std::shared_ptr<Feed>& feed() const { return feed_; }
 
-    /// Another wish from the next frame on. On failure the old one stays; the reason names the limit.
-    std::optional<std::string> change(const Wish& wish, const Pace& pace = {}) {
-        return feed_->change(id_, wish, pace);
+    /// Another selection from the next frame on. On failure the old one stays; the reason names the limit.
+    std::optional<std::string> change(const Selection& selection, const Pace& pace = {}) {
+        return feed_->change(id_, selection, pace);
     }
     void end();
 

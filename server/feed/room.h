@@ -18,7 +18,7 @@ struct Room {
     std::optional<TimePoint> taken_until = std::nullopt;
 };
 
-/// When the wish of a subscriber counts, from and until inclusive.
+/// When the selection of a subscriber counts, from and until inclusive.
 struct Window {
     using TimePoint = Room::TimePoint;
 

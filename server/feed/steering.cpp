@@ -25,8 +25,8 @@ SteeringSeat& SteeringSeat::operator=(SteeringSeat&& other) noexcept {
     return *this;
 }
 
-void SteeringSeat::request(SteeringWish wish, TimePoint now) {
-    steering_->state_.lock()->lease.request(id_, wish, now);
+void SteeringSeat::request(SteeringUrgency urgency, TimePoint now) {
+    steering_->state_.lock()->lease.request(id_, urgency, now);
 }
 
 void SteeringSeat::release(TimePoint now) {

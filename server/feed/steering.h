@@ -62,7 +62,7 @@ public:
 
     const std::shared_ptr<Steering>& steering() const { return steering_; } ///< null: at no camera
 
-    void request(SteeringWish wish, TimePoint now);
+    void request(SteeringUrgency urgency, TimePoint now);
     void release(TimePoint now);
     void offer(TimePoint now);
 

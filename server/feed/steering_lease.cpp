@@ -16,10 +16,10 @@ void SteeringLease::leave(Id id, TimePoint now) {
     members_.erase(id);
 }
 
-void SteeringLease::request(Id id, SteeringWish wish, TimePoint now) {
+void SteeringLease::request(Id id, SteeringUrgency urgency, TimePoint now) {
     look_at_clock(now);
     const SteeringRight right = members_.at(id).steerer.right;
-    const bool is_taken = wish == SteeringWish::kTake;
+    const bool is_taken = urgency == SteeringUrgency::kTake;
     if (right == SteeringRight::kNone || (is_taken && right != SteeringRight::kTake)) {
         return deny(id, SteeringDenial::Reason::kRoleTooLow);
     }
@@ -30,7 +30,7 @@ void SteeringLease::request(Id id, SteeringWish wish, TimePoint now) {
         return grant(id, now);
     }
     const bool is_in_queue = std::ranges::find(queue_, id) != queue_.end();
-    if (wish == SteeringWish::kWait && !is_in_queue) {
+    if (urgency == SteeringUrgency::kWait && !is_in_queue) {
         queue_.push_back(id);
     }
     deny(id, SteeringDenial::Reason::kHeld);

@@ -27,7 +27,7 @@ struct Steerer {
 };
 
 /// How somebody asks to steer.
-enum class SteeringWish : std::uint8_t {
+enum class SteeringUrgency : std::uint8_t {
     kNow,  ///< now or not at all
     kWait, ///< now, or when it is my turn
     kTake, ///< now, whoever steers; needs SteeringRight::kTake
@@ -76,7 +76,7 @@ public:
     void leave(Id id, TimePoint now); ///< and goes: its lease and its place in the queue go with it
 
     /// Answered by notices: a grant or a denial.
-    void request(Id id, SteeringWish wish, TimePoint now);
+    void request(Id id, SteeringUrgency urgency, TimePoint now);
 
     /// False: `id` does not hold the lease.
     bool renew(Id id, TimePoint now);

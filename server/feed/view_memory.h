@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/feed/wish.h"
+#include "server/feed/selection.h"
 
 #include <atomic>
 #include <memory>

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -62,12 +63,33 @@ void check_channels(const Config& config, Problems& problems) {
     }
 }
 
+void check_framing(const Config& config, Problems& problems) {
+    const scene::FramingOptions& framing = config.framing;
+    const bool is_automatic = config.camera.empty() || config.camera == scene::kFramingCamera;
+    expect(problems, is_automatic || !framing.any(), "--camera", config.camera,
+           "--look-from, --look-at, --fov and --orbit are for the camera auto; leave --camera out");
+    const auto is_place = [](const std::optional<glm::vec3>& place) {
+        const glm::vec3 a = glm::abs(place.value_or(glm::vec3(0.0F)));
+        return a.x <= 1e9F && a.y <= 1e9F && a.z <= 1e9F;
+    };
+    expect(problems, is_place(framing.look_from), "--look-from", "", "at most 1e9 metres from the origin");
+    expect(problems, is_place(framing.look_at), "--look-at", "", "at most 1e9 metres from the origin");
+    expect(problems, !framing.look_from || framing.look_from != framing.look_at, "--look-at", "",
+           "another place than --look-from");
+    const float fovy = framing.fovy_rad.value_or(1.0F);
+    expect(problems, fovy >= 0.0174F && fovy <= 2.9671F, "--fov", fovy * 180.0F / std::numbers::pi_v<float>,
+           "1 to 170 degrees");
+    const double orbit = framing.orbit_s.value_or(1.0);
+    expect(problems, orbit >= 0.1 && orbit <= 86'400.0, "--orbit", orbit, "0.1 to 86400 seconds");
+}
+
 void check_lattice(const Config& config, Problems& problems) {
     const auto is_side = [](std::uint32_t px) { return px >= 16 && px <= kMaxSourceSide; };
     expect(problems, is_side(config.width_px) && is_side(config.height_px), "--size",
            std::to_string(config.width_px) + "x" + std::to_string(config.height_px), "16 to 8192 pixels on each side");
     const float fps = config.frames_per_second;
     expect(problems, is_frame_rate(fps), "--fps", fps, "0.1 to 240");
+    check_framing(config, problems);
     const float spacing = config.spacing_m.value_or(0.0F);
     expect(problems, spacing >= 0.0F && spacing <= 1000.0F, "--spacing", spacing, "0 to 1000 metres");
     expect(problems, config.lattice.convergence_m > 0.0F, "--convergence", config.lattice.convergence_m,

@@ -3,10 +3,11 @@
 
 #include "core/base/log.h"
 #include "core/lightfield/camera.h"
+#include "core/scene/framing.h"
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
 #include "server/feed/channel_info.h"
-#include "server/recording/form.h"
+#include "server/recording/recorded_form.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server/session/limits.h"
@@ -48,7 +49,8 @@ struct Config {
     // Scenes, the same for all channels.
     std::optional<std::filesystem::path> environment;
     std::optional<glm::vec3> sky; ///< linear radiance; unset: the loader's default
-    std::string camera;           ///< name of a camera node; empty: "LightField", else the first
+    std::string camera;           ///< name or number of a camera node; empty: "LightField", else the first, else "auto"
+    scene::FramingOptions framing; ///< of the camera "auto"
     bool has_fixed_camera = false;
     std::chrono::milliseconds steering_lease{5'000}; ///< of steered cameras, without a sign of life of who steers
     double own_camera_budget_ms = 1'000.0; ///< of the device per second, for all of them
@@ -60,7 +62,8 @@ struct Config {
     std::uint32_t width_px = 1280;
     std::uint32_t height_px = 720;
     float frames_per_second = 30.0F; ///< at most
-    std::optional<float> spacing_m;  ///< unset: the camera's, else 0.03
+    std::optional<float> spacing_m;  ///< unset: the camera's, else it follows from the scene's depths
+    bool has_convergence = false;    ///< false: follows from the scene's depths where the spacing does
     LatticeGeometry lattice;         ///< convergence; spacing is settled when the camera is known
     ViewGrid largest_grid;           ///< rows and columns
     GuardBandMode guard_band_mode = GuardBandMode::kAuto;
@@ -75,7 +78,7 @@ struct Config {
     // Recordings.
     std::optional<float> replay_fps; ///< of all replays; unset: as recorded
     std::vector<RecordChoice> records;
-    std::vector<recording::Form> record_forms;
+    std::vector<recording::RecordedForm> record_forms;
     std::uint64_t record_frames = 0; ///< of each recording; 0: until the server stops
 
     // Device.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -44,11 +45,6 @@ template <class T> struct Word {
     T value;
 };
 
-constexpr std::array kDenoisers{Word{.word = "svgf+", .value = Denoiser::kSvgfPlus},
-                                Word{.word = "svgf", .value = Denoiser::kSvgf},
-                                Word{.word = "bmfr", .value = Denoiser::kBmfr},
-                                Word{.word = "none", .value = Denoiser::kNone}};
-constexpr std::array kRoutes{Word{.word = "green", .value = Route::kGreen}, Word{.word = "red", .value = Route::kRed}};
 constexpr std::array kSamplers{Word{.word = "z-sobol", .value = Sampler::kZSobol},
                                Word{.word = "sobol", .value = Sampler::kSobol}};
 constexpr std::array kSwitch{Word{.word = "off", .value = false}, Word{.word = "on", .value = true}};
@@ -69,6 +65,15 @@ void read_word(const char* flag, const std::string& text, const std::array<Word<
         allowed += (allowed.empty() ? "" : ", ") + std::string(word.word);
     }
     problems.push_back(std::string(flag) + " " + text + ": one of " + allowed);
+}
+
+/// Of an enumeration with words of its own.
+template <class Enum> void read_word(const char* flag, const std::string& text, Enum& value, Problems& problems) {
+    if (const auto read = from_word<Enum>(text)) {
+        value = *read;
+    } else {
+        problems.push_back(std::string(flag) + " " + text + ": one of " + alternatives<Enum>());
+    }
 }
 
 void read_channels(const FlagText& text, Config& config, Problems& problems) {
@@ -111,9 +116,9 @@ void read_guard_band(const FlagText& text, Config& config, Problems& problems) {
 }
 
 void read_lattice(const FlagText& text, Config& config, Problems& problems) {
-    if (const auto size = parse_grid(text.size)) { // WIDTHxHEIGHT reads like ROWSxCOLS
-        config.width_px = size->rows;
-        config.height_px = size->cols;
+    if (const auto size = parse_size(text.size)) {
+        config.width_px = size->x;
+        config.height_px = size->y;
     } else {
         problems.push_back("--size " + text.size + ": write WIDTHxHEIGHT, as in 1280x720");
     }
@@ -129,9 +134,10 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
             "--sources " + text.sources +
             ": middle, top-left, diagonal, triangle, corners, or views of the largest grid as in \"0,0;5,5\"");
     }
+    config.has_convergence = !text.convergence.empty();
     if (const auto metres = read_number<float>(text.convergence)) {
         config.lattice.convergence_m = *metres;
-    } else {
+    } else if (config.has_convergence) {
         problems.push_back("--convergence " + text.convergence + ": a number of metres, or inf");
     }
     if (text.exposure == "auto") {
@@ -142,6 +148,26 @@ void read_lattice(const FlagText& text, Config& config, Problems& problems) {
         config.settings.exposure = *exposure;
     } else {
         problems.push_back("--exposure " + text.exposure + ": 'auto' or a number above 0");
+    }
+}
+
+std::optional<glm::vec3> read_point(const char* flag, const std::string& text, Problems& problems) {
+    std::array<float, 3> point{};
+    if (text.empty()) {
+        return std::nullopt;
+    }
+    if (!read_list<float>(text, point)) {
+        problems.push_back(std::string(flag) + " " + text + ": write X,Y,Z in metres, as in 0,1.6,4");
+        return std::nullopt;
+    }
+    return glm::vec3(point[0], point[1], point[2]);
+}
+
+void read_framing(const FlagText& text, Config& config, Problems& problems) {
+    config.framing.look_from = read_point("--look-from", text.look_from, problems);
+    config.framing.look_at = read_point("--look-at", text.look_at, problems);
+    if (text.fov_deg) {
+        config.framing.fovy_rad = *text.fov_deg * std::numbers::pi_v<float> / 180.0F;
     }
 }
 
@@ -205,12 +231,12 @@ void apply_preset(FlagText& text, Config& config) {
         return;
     }
     config.settings = preset->settings;
-    text.denoiser = word_of(preset->settings.denoiser, kDenoisers);
+    text.denoiser = word_of(preset->settings.denoiser);
     text.sampler = word_of(preset->settings.sampler, kSamplers);
     text.reflections = word_of(preset->settings.reflections, kSwitch);
     text.each_light_kind = word_of(preset->settings.light_sampling.each_kind, kSwitch);
     text.history_light = word_of(preset->settings.history_light, kSwitch);
-    text.route = word_of(preset->settings.route, kRoutes);
+    text.denoise = word_of(preset->settings.denoised_images);
     text.accumulate_views = word_of(preset->settings.accumulate_views, kSwitch);
     text.holes = preset->settings.holes == HoleFilling::path_traced() ? "none" : "all";
     text.guard_band = preset->has_guard_band ? "auto" : "none";
@@ -224,6 +250,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_sky(text, config, problems);
     read_guard_band(text, config, problems);
     read_lattice(text, config, problems);
+    read_framing(text, config, problems);
     read_holes(text, config, problems);
     read_listen(text, config, problems);
     read_security(text, config, problems);
@@ -242,11 +269,11 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     constexpr std::array kLevels{
         Word{.word = "debug", .value = log::Level::kDebug}, Word{.word = "info", .value = log::Level::kInfo},
         Word{.word = "warn", .value = log::Level::kWarn}, Word{.word = "error", .value = log::Level::kError}};
-    read_word("--denoiser", text.denoiser, kDenoisers, config.settings.denoiser, problems);
+    read_word("--denoiser", text.denoiser, config.settings.denoiser, problems);
     read_word("--each-light-kind", text.each_light_kind, kSwitch, config.settings.light_sampling.each_kind, problems);
     read_word("--history-light", text.history_light, kSwitch, config.settings.history_light, problems);
     read_word("--reflections", text.reflections, kSwitch, config.settings.reflections, problems);
-    read_word("--route", text.route, kRoutes, config.settings.route, problems);
+    read_word("--denoise", text.denoise, config.settings.denoised_images, problems);
     read_word("--accumulate-views", text.accumulate_views, kSwitch, config.settings.accumulate_views, problems);
     read_word("--tone-map", text.tone_map, kToneMaps, config.settings.tone_map, problems);
     read_word("--sampler", text.sampler, kSamplers, config.settings.sampler, problems);

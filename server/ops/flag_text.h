@@ -19,16 +19,19 @@ struct FlagText {
     std::string environment;
     std::string sky; ///< R,G,B
     std::string size = "1280x720";
-    std::string convergence = "inf";
+    std::string convergence; ///< empty: inf, or as the scene's depths have it
+    std::string look_from;
+    std::string look_at;
+    std::optional<float> fov_deg;
     std::string largest_grid = "6x6";
     std::string sources = "middle";
     bool lacks_next_event_estimation = false;
     std::string reflections = "on";
     std::string each_light_kind = "on";
     std::string history_light = "on";
-    std::string preset = "ours"; ///< what other flags' defaults come from
+    std::string preset = "default"; ///< what other flags' defaults come from
     std::string denoiser = "svgf+";
-    std::string route = "green";
+    std::string denoise = "source";
     std::string accumulate_views = "off";
     std::string holes = "all";
     std::string sampler = "z-sobol";

@@ -41,7 +41,16 @@ void add_scene_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--channel", text.channels, "NAME=FILE: a channel of that name. May be repeated")->group("Scene");
     app.add_option("--environment", text.environment, "Equirectangular .hdr or .exr for all channels")->group("Scene");
     app.add_option("--sky", text.sky, "R,G,B: linear radiance of the sky without an environment")->group("Scene");
-    app.add_option("--camera", config.camera, "Camera node; default: LightField, else the first")->group("Scene");
+    app.add_option("--camera", config.camera,
+                   "Camera of the file, by name or number, or auto: frames the scene by itself. Default: LightField, else "
+                   "the first, else auto")
+        ->group("Scene");
+    app.add_option("--look-from", text.look_from, "X,Y,Z: where the camera auto stands, metres")->group("Scene");
+    app.add_option("--look-at", text.look_at, "X,Y,Z: what the camera auto looks at, metres")->group("Scene");
+    app.add_option("--fov", text.fov_deg, "Vertical field of view of the camera auto, 1 to 170 degrees")->group("Scene");
+    app.add_option("--orbit", config.framing.orbit_s,
+                   "Seconds for one turn of the camera auto round what it looks at, from 0.1 on")
+        ->group("Scene");
     app.add_flag("--fixed-camera", config.has_fixed_camera, "The camera stays where it is at the start")
         ->group("Scene");
     app.add_option("--time", config.fixed_time_s, "Freezes the scene at that time, seconds")->group("Scene");
@@ -59,11 +68,11 @@ void add_image_flags(CLI::App& app, FlagText& text, Config& config) {
         ->group("Light field")
         ->capture_default_str();
     app.add_option("--spacing", config.spacing_m,
-                   "Distance of neighbouring views, metres; default: the camera's, or 0.03")
+                   "Distance of neighbouring views, metres; default: the camera's, else comfortable for the depths in sight")
         ->group("Light field");
-    app.add_option("--convergence", text.convergence, "Depth of zero disparity, metres; inf: parallel cameras")
-        ->group("Light field")
-        ->capture_default_str();
+    app.add_option("--convergence", text.convergence, "Depth of zero disparity, metres; inf: parallel cameras. Default: inf, or the subject's depth where the "
+                   "spacing follows from depths, too")
+        ->group("Light field");
     app.add_option("--largest-grid", text.largest_grid, "ROWSxCOLS that the guard band is made for")
         ->group("Light field")
         ->capture_default_str();
@@ -94,7 +103,7 @@ void add_filter_flags(CLI::App& app, FlagText& text, RenderSettings& settings) {
                    "previous,isolated,cascade,source,denoise")
         ->group("Rendering")
         ->capture_default_str();
-    app.add_option("--route", text.route, "What is denoised: the source (green), or every view (red)")
+    app.add_option("--denoise", text.denoise, "Images that are denoised: the source, or all views")
         ->group("Rendering")
         ->capture_default_str();
     app.add_option("--accumulate-views", text.accumulate_views,
@@ -233,7 +242,7 @@ struct CommandLine {
     RecordJob record_job;
     std::vector<std::string> products{"quilt", "views", "exr"};
 
-    explicit CommandLine(Task asked = Task::kServe, const std::string& preset = "ours") : task(asked) {
+    explicit CommandLine(Task asked = Task::kServe, const std::string& preset = "default") : task(asked) {
         text.preset = preset;
         apply_preset(text, config);
         app.footer(kExamples);

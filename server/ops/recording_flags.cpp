@@ -85,8 +85,7 @@ void add_recording_flags(CLI::App& app, RecordingText& text, Config& config) {
         ->group("Recordings");
     app.add_option(
            "--record-form", text.forms,
-           "What to record: views[:RxC[:WxH]][:CODEC[:QUALITY]], planes[:CODEC[:QUALITY]] or g-buffer likewise; "
-           "codecs raw, zstd, jpeg. May be repeated; default: views")
+           "What to record; default: views. May be repeated. To type: " + recording::form_syntax())
         ->group("Recordings");
     app.add_option("--record-frames", config.record_frames, "Ends each recording after so many frames; 0: never")
         ->group("Recordings")
@@ -110,7 +109,7 @@ void read_recordings(const RecordingText& text, Config& config, std::vector<std:
         if (form && !problem) {
             config.record_forms.push_back(*form);
         } else {
-            problems.push_back("--record-form " + typed + ": " + problem.value_or(recording::kFormSyntax));
+            problems.push_back("--record-form " + typed + ": " + problem.value_or(recording::form_syntax()));
         }
     }
     if (config.record_forms.empty()) {
@@ -122,7 +121,7 @@ std::vector<std::string> recording_problems(const Config& config) {
     std::vector<std::string> problems;
     check_replays(config, problems);
     check_records(config, problems);
-    for (const recording::Form& form : config.record_forms) {
+    for (const recording::RecordedForm& form : config.record_forms) {
         const glm::uvec2 size = form.size_px.value_or(glm::uvec2(1));
         if (size.x == 0 || size.y == 0 || size.x > config.width_px || size.y > config.height_px) {
             problems.push_back("--record-form " + std::to_string(size.x) + "x" + std::to_string(size.y) +

@@ -24,27 +24,27 @@ void encoding_to_proto(const codec::Encoding& encoding, v1::RecordedEncoding& me
     message.set_quality(encoding.quality);
 }
 
-void form_to_proto(const feed::PlanesWish& wish, v1::RecordedForm& message) {
-    for (const wire::PlaneChoice& choice : wish.choices) {
+void form_to_proto(const feed::PlaneSelection& selection, v1::RecordedForm& message) {
+    for (const wire::PlaneChoice& choice : selection.choices) {
         v1::RecordedPlane& plane = *message.mutable_planes()->add_planes();
         plane.set_semantic(wire::to_proto(choice.semantic));
         encoding_to_proto(choice.encoding, *plane.mutable_encoding());
     }
 }
 
-void form_to_proto(const feed::ViewsWish& wish, v1::RecordedForm& message) {
-    const wire::ViewFormat& format = wish.format;
-    wire::to_proto(wire::ViewSet{wish.grid, format.width_px, format.height_px, format.fovy_rad},
+void form_to_proto(const feed::ViewSelection& selection, v1::RecordedForm& message) {
+    const wire::ViewFormat& format = selection.format;
+    wire::to_proto(wire::ViewSet{selection.grid, format.width_px, format.height_px, format.fovy_rad},
                    *message.mutable_views()->mutable_view_set());
     encoding_to_proto(format.encoding, *message.mutable_views()->mutable_encoding());
 }
 
 Decoded<codec::Encoding> encoding_from_proto(const v1::RecordedEncoding& message, PlaneSemantic semantic) {
     const auto codec = wire::from_proto(message.codec());
-    if (!codec || !codec::fits(*codec, wire::wire_format(semantic))) {
+    if (!codec || !carries(*codec, usual_format(semantic))) {
         return decode_error("form: codec " + std::to_string(message.codec()) + " is unknown or does not fit its plane");
     }
-    const bool is_right = codec::is_lossy(*codec) ? message.quality() >= 1 && message.quality() <= codec::kMaxQuality
+    const bool is_right = is_lossy(*codec) ? message.quality() >= 1 && message.quality() <= kMaxQuality
                                                   : message.quality() == 0;
     if (!is_right) {
         return decode_error("form: quality " + std::to_string(message.quality()) + " does not fit the codec");
@@ -52,26 +52,26 @@ Decoded<codec::Encoding> encoding_from_proto(const v1::RecordedEncoding& message
     return codec::Encoding{.codec = *codec, .quality = static_cast<std::uint8_t>(message.quality())};
 }
 
-Decoded<feed::Wish> wish_from_proto(const v1::RecordedPlanes& message) {
-    feed::PlanesWish wish;
+Decoded<feed::Selection> selection_from_proto(const v1::RecordedPlanes& message) {
+    feed::PlaneSelection selection;
     if (message.planes().empty() || message.planes_size() > kMaxPlanes) {
         return decode_error("form: " + std::to_string(message.planes_size()) + " planes, 1 to 16 are right");
     }
     for (const v1::RecordedPlane& plane : message.planes()) {
         const auto semantic = wire::from_proto(plane.semantic());
-        if (!semantic || *semantic == PlaneSemantic::kColour) {
+        if (!semantic) {
             return decode_error("form: unknown plane " + std::to_string(plane.semantic()));
         }
         const auto encoding = encoding_from_proto(plane.encoding(), *semantic);
         if (!encoding) {
             return tl::unexpected(encoding.error());
         }
-        wish.choices.push_back({.semantic = *semantic, .encoding = *encoding});
+        selection.choices.push_back({.semantic = *semantic, .encoding = *encoding});
     }
-    return wish;
+    return selection;
 }
 
-Decoded<feed::Wish> wish_from_proto(const v1::RecordedViews& message) {
+Decoded<feed::Selection> selection_from_proto(const v1::RecordedViews& message) {
     const auto set = wire::from_proto(message.view_set());
     if (!set) {
         return tl::unexpected(set.error());
@@ -80,7 +80,7 @@ Decoded<feed::Wish> wish_from_proto(const v1::RecordedViews& message) {
     if (!encoding) {
         return tl::unexpected(encoding.error());
     }
-    return feed::ViewsWish{.format = {.geometry = set->grid.geometry,
+    return feed::ViewSelection{.format = {.geometry = set->grid.geometry,
                                       .fovy_rad = set->fovy_rad,
                                       .width_px = set->width_px,
                                       .height_px = set->height_px,
@@ -88,12 +88,12 @@ Decoded<feed::Wish> wish_from_proto(const v1::RecordedViews& message) {
                            .grid = set->grid};
 }
 
-Decoded<feed::Wish> wish_from_proto(const v1::RecordedForm& message) {
+Decoded<feed::Selection> selection_from_proto(const v1::RecordedForm& message) {
     switch (message.form_case()) {
     case v1::RecordedForm::kPlanes:
-        return wish_from_proto(message.planes());
+        return selection_from_proto(message.planes());
     case v1::RecordedForm::kViews:
-        return wish_from_proto(message.views());
+        return selection_from_proto(message.views());
     case v1::RecordedForm::FORM_NOT_SET:
         break;
     }
@@ -161,8 +161,8 @@ Bytes to_bytes(const feed::ChannelInfo& info) {
     wire::to_proto(info.guard_band, *message.mutable_guard_band());
     message.set_camera(info.camera);
     message.set_is_camera_animated(info.control != feed::CameraControl::kFixed);
-    for (const feed::Wish& wish : info.recorded) {
-        std::visit([&](const auto& kind) { form_to_proto(kind, *message.add_forms()); }, wish);
+    for (const feed::Selection& selection : info.recorded) {
+        std::visit([&](const auto& kind) { form_to_proto(kind, *message.add_forms()); }, selection);
     }
     Bytes bytes(message.ByteSizeLong());
     message.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
@@ -186,11 +186,11 @@ Decoded<feed::ChannelInfo> channel_from_bytes(std::span<const std::byte> bytes) 
     info.largest_grid = *grid;
     info.guard_band = *band;
     for (const v1::RecordedForm& form : message.forms()) {
-        auto wish = wish_from_proto(form);
-        if (!wish) {
-            return tl::unexpected(wish.error());
+        auto selection = selection_from_proto(form);
+        if (!selection) {
+            return tl::unexpected(selection.error());
         }
-        info.recorded.push_back(std::move(*wish));
+        info.recorded.push_back(std::move(*selection));
     }
     return info;
 }

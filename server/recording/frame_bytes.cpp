@@ -127,7 +127,6 @@ Decoded<void> read_source(const v1::RecordedFrame& message, const feed::Demand& 
         return tl::unexpected(header.error());
     }
     frame.source.emplace(wire::EncodedSource{.header = *header, .key_frame_id = frame.key_frame_id, .planes = {}});
-    const std::uint32_t width_px = with_guard_band(header->source, header->guard_band).width_px;
     for (std::size_t i = 0; i < demand.planes.size(); ++i) {
         const wire::PlaneChoice& choice = demand.planes[i];
         const v1::FramePlane& entry = message.planes(static_cast<int>(i));
@@ -137,7 +136,7 @@ Decoded<void> read_source(const v1::RecordedFrame& message, const feed::Demand& 
                                  .width_px = entry.width_px(),
                                  .height_px = entry.height_px(),
                                  .strips = {}};
-        if (plane.width_px != width_px || plane.height_px != plane_height(*header, choice.semantic)) {
+        if (plane.width_px != plane_width(*header, choice.semantic) || plane.height_px != plane_height(*header, choice.semantic)) {
             return decode_error("frame: a plane does not have the size of its source");
         }
         if (const auto read = strips.read(entry, plane); !read) {

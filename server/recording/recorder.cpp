@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxWaiting = 8; ///< frames between the channel and the disk
 
-feed::ChannelInfo with_forms(feed::ChannelInfo info, const std::vector<feed::Wish>& wishes) {
-    info.recorded = wishes;
+feed::ChannelInfo with_forms(feed::ChannelInfo info, const std::vector<feed::Selection>& selections) {
+    info.recorded = selections;
     return info;
 }
 
@@ -28,10 +28,10 @@ Recorder::Recorder(const std::shared_ptr<feed::Feed>& feed, RecorderSetup setup,
       bytes_(counter(registry, "fieldcast_recorded_bytes_total", "Bytes that were written to a recording.", channel_)),
       lost_(counter(registry, "fieldcast_recording_lost_frames_total",
                     "Frames missing in a recording: the disk was too slow.", channel_)),
-      writer_(setup_.file, with_forms(feed->info(), setup_.wishes)) {
-    for (const feed::Wish& wish : setup_.wishes) {
+      writer_(setup_.file, with_forms(feed->info(), setup_.selections)) {
+    for (const feed::Selection& selection : setup_.selections) {
         const bool is_first = subscriptions_.empty(); // every subscriber gets every frame: one queue is enough
-        auto subscription = feed::Feed::subscribe(feed, wish, is_first ? taker() : [](const feed::FramePtr&) {});
+        auto subscription = feed::Feed::subscribe(feed, selection, is_first ? taker() : [](const feed::FramePtr&) {});
         if (!subscription) {
             throw UserError(setup_.file.string() + ": " + subscription.error());
         }

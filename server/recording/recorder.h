@@ -15,7 +15,7 @@ namespace fieldcast::recording {
 /// What to record of a channel, and where.
 struct RecorderSetup {
     std::filesystem::path file;
-    std::vector<feed::Wish> wishes; ///< every frame of the file has all of them
+    std::vector<feed::Selection> selections; ///< every frame of the file has all of them
     std::uint64_t max_frames = 0;   ///< ends then; 0: when it is destroyed
 };
 

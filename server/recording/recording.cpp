@@ -44,8 +44,8 @@ void Recording::read_channel() {
         throw refuse(info.error());
     }
     info_ = std::move(*info);
-    for (const feed::Wish& wish : info_.recorded) {
-        feed::add(demand_, wish);
+    for (const feed::Selection& selection : info_.recorded) {
+        feed::add(demand_, selection);
     }
     frames_begin_ = kMagic.size() + kRecordHeadBytes + bytes->size();
     const auto next = read_head(file_, frames_begin_, file_bytes_);

@@ -12,8 +12,8 @@ namespace fieldcast::recording {
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const feed::ChannelInfo& info)
     : path_(file), file_(file, std::ios::binary | std::ios::trunc), recorded_(info.recorded) {
     FC_ASSERT(!recorded_.empty(), "a recording of nothing");
-    for (const feed::Wish& wish : recorded_) {
-        feed::add(demand_, wish);
+    for (const feed::Selection& selection : recorded_) {
+        feed::add(demand_, selection);
     }
     if (!file_) {
         throw UserError(file.string() + ": cannot be written");
@@ -38,8 +38,8 @@ RecordingWriter::~RecordingWriter() {
 }
 
 bool RecordingWriter::can_hold(const feed::EncodedFrame& frame) const {
-    return std::ranges::all_of(recorded_, [&](const feed::Wish& wish) {
-        return feed::covers(frame, wish) && feed::stands_alone(frame, wish);
+    return std::ranges::all_of(recorded_, [&](const feed::Selection& selection) {
+        return feed::covers(frame, selection) && feed::stands_alone(frame, selection);
     });
 }
 

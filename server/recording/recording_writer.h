@@ -35,7 +35,7 @@ private:
 
     std::filesystem::path path_;
     std::ofstream file_;
-    std::vector<feed::Wish> recorded_;
+    std::vector<feed::Selection> recorded_;
     feed::Demand demand_; ///< the union of what is recorded
     std::vector<IndexEntry> frames_;
     std::chrono::nanoseconds begin_{0};

@@ -110,13 +110,12 @@ CatalogService::CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& c
                                const access::Gate& gate, metrics::Registry& registry)
     : channels_(channels), limits_(limits), gate_(gate), downloads_(limits, registry) {
     server_info_.set_version(FIELDCAST_VERSION);
-    server_info_.add_modes(v1::DELIVERY_MODE_VIEWS);
-    server_info_.add_modes(v1::DELIVERY_MODE_SCENE);
-    server_info_.add_modes(v1::DELIVERY_MODE_WARP);
-    server_info_.add_codecs(v1::CODEC_ZSTD_FILTERED);
-    server_info_.add_codecs(v1::CODEC_RAW);
-    server_info_.add_codecs(v1::CODEC_JPEG);
-    server_info_.add_codecs(v1::CODEC_H264);
+    for (const DeliveryMode mode : kAll<DeliveryMode>) {
+        server_info_.add_modes(wire::to_proto(mode));
+    }
+    for (const Codec codec : kAll<Codec>) {
+        server_info_.add_codecs(wire::to_proto(codec));
+    }
     *server_info_.mutable_limits() = limits_message(channels, limits);
     for (const auto& channel : channels) {
         *channel_list_.add_channels() = channel_message(channel->info());

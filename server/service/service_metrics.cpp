@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/service_metrics.h"
 
-#include "core/wire/convert.h"
+#include "core/lightfield/vocabulary.h"
 
-#include <cctype>
+#include <array>
 
 namespace fieldcast::service {
 
@@ -11,23 +11,6 @@ namespace {
 
 constexpr std::array kDenialNames{"no_token", "unknown_token", "role_too_low"};
 constexpr std::array kRefusalNames{"sessions", "sessions_per_peer", "opens", "draining"};
-
-/// "PLANE_SEMANTIC_DIFFUSE" without "PLANE_SEMANTIC_" -> "diffuse"
-std::string label_of(const std::string& enum_name, std::size_t prefix_size) {
-    std::string label = enum_name.substr(std::min(prefix_size, enum_name.size()));
-    for (char& c : label) {
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    return label;
-}
-
-std::string label_of(PlaneSemantic semantic) {
-    return label_of(v1::PlaneSemantic_Name(wire::to_proto(semantic)), std::string_view("PLANE_SEMANTIC_").size());
-}
-
-std::string label_of(codec::CodecId codec) {
-    return label_of(v1::Codec_Name(wire::to_proto(codec)), std::string_view("CODEC_").size());
-}
 
 metrics::Counter& closed_counter(metrics::Registry& registry, session::CloseReason reason) {
     return registry.counter({"fieldcast_sessions_closed_total", "Sessions that ended, by reason."},
@@ -99,7 +82,7 @@ void ServiceMetrics::add(const std::string& channel, const session::SessionCount
     }
     for (const auto& [choice, bytes] : counts.plane_bytes) {
         add("fieldcast_plane_bytes_total", "Payload of complete frames, by plane and codec.",
-            {{"channel", channel}, {"plane", label_of(choice.semantic)}, {"codec", label_of(choice.encoding.codec)}},
+            {{"channel", channel}, {"plane", std::string(word_of(choice.semantic))}, {"codec", std::string(word_of(choice.encoding.codec))}},
             bytes);
     }
 }

@@ -15,13 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of metrics: the mode's name in lower case, without its prefix.
-std::string mode_label(v1::DeliveryMode mode) {
-    std::string label = v1::DeliveryMode_Name(mode).substr(std::string_view("DELIVERY_MODE_").size());
-    std::ranges::transform(label, label.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return label;
-}
-
 } // namespace
 
 std::shared_ptr<Stream> Stream::open(grpc::CallbackServerContext& context, Setup setup) {
@@ -164,7 +157,7 @@ void Stream::log_configuration(session::Session& session) const {
                         {{"session", setup_.id},
                          {"epoch", session.epoch()},
                          {"channel", configuration->feed->info().name},
-                         {"mode", v1::DeliveryMode_Name(configuration->mode)},
+                         {"mode", std::string(word_of(configuration->mode))},
                          {"rows", set.grid.rows},
                          {"cols", set.grid.cols},
                          {"width_px", set.width_px},
@@ -225,7 +218,7 @@ SessionFacts Stream::facts() {
     if (const auto& configuration = state->session->configuration()) {
         const ViewGrid& grid = configuration->view_set.grid;
         facts.channel = configuration->feed->info().name;
-        facts.mode = mode_label(configuration->mode);
+        facts.mode = word_of(configuration->mode);
         facts.grid = std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
     }
     return facts;

@@ -15,29 +15,29 @@ namespace {
 
 // Expected bytes after a step, as a share of those before; see docs/benchmarks.md, "Codecs". They only choose how far
 // to go at once: what is measured afterwards decides.
-constexpr double kJpegShareOfViews = 0.15;
-constexpr double kJpegShareOfPlanes = 0.5; // depth, normal, id and material stay as they are
+constexpr double kLossyShareOfViews = 0.15;
+constexpr double kLossyShareOfPlanes = 0.5; // depth, normal, id and material stay as they are
 constexpr double kQualityShare = 0.7;
 constexpr double kSizeStep = 2.0 / 3.0;
 
-std::vector<wire::PlaneChoice> choices_of(const feed::Wish& wish) {
-    if (const auto* views = std::get_if<feed::ViewsWish>(&wish)) {
+std::vector<wire::PlaneChoice> choices_of(const feed::Selection& selection) {
+    if (const auto* views = std::get_if<feed::ViewSelection>(&selection)) {
         return {{.semantic = PlaneSemantic::kColour, .encoding = views->format.encoding}};
     }
-    return std::get<feed::PlanesWish>(wish).choices;
+    return std::get<feed::PlaneSelection>(selection).choices;
 }
 
-/// The planes of a configuration, whatever its mode, that JPEG can carry.
+/// The planes of a configuration, whatever its mode, that lossy codecs can carry.
 std::vector<wire::PlaneChoice> pictures_of(const Configuration& granted) {
-    std::vector<wire::PlaneChoice> choices = choices_of(granted.wish);
+    std::vector<wire::PlaneChoice> choices = choices_of(granted.selection);
     std::erase_if(choices, [](const wire::PlaneChoice& choice) {
-        return !codec::fits(codec::CodecId::kJpeg, wire::format_of(choice));
+        return !is_picture(choice.semantic);
     });
     return choices;
 }
 
-bool is_lossy(const wire::PlaneChoice& choice) {
-    return codec::is_lossy(choice.encoding.codec);
+bool is_encoded_lossy(const wire::PlaneChoice& choice) {
+    return is_lossy(choice.encoding.codec);
 }
 
 template <class Numbers> bool contains(const Numbers& numbers, int number) {
@@ -45,14 +45,14 @@ template <class Numbers> bool contains(const Numbers& numbers, int number) {
 }
 
 /// That codec and quality for that plane, instead of what was said about it.
-void set_codec(v1::Configure& wanted, PlaneSemantic plane, v1::Codec codec, std::uint8_t quality) {
+void set_codec(v1::Configure& wanted, PlaneSemantic plane, Codec codec, std::uint8_t quality) {
     const v1::PlaneSemantic semantic = wire::to_proto(plane);
     const auto same = [&](const v1::CodecPreference& p) { return p.semantic() == semantic; };
     const auto found = std::ranges::find_if(*wanted.mutable_codecs(), same);
     v1::CodecPreference& preference = found != wanted.mutable_codecs()->end() ? *found : *wanted.add_codecs();
     preference.set_semantic(semantic);
     preference.clear_codecs();
-    preference.add_codecs(codec);
+    preference.add_codecs(wire::to_proto(codec));
     preference.set_quality(quality);
 }
 
@@ -63,7 +63,7 @@ class LadderBuilder {
 public:
     LadderBuilder(const v1::Adaptation& bounds, const Configuration& granted, Ladder& ladder)
         : granted_(granted), bounds_(bounds), ladder_(ladder), rungs_(ladder.rungs_),
-          has_views_(granted.mode == v1::DELIVERY_MODE_VIEWS) {}
+          has_views_(!is_made_by_client(granted.mode)) {}
 
     void build() {
         rungs_.push_back(Rung{});
@@ -85,18 +85,35 @@ private:
         return rungs_.emplace_back(rung);
     }
 
-    bool allows_jpeg() const { return contains(bounds_.codecs(), v1::CODEC_JPEG); }
+    /// The first lossy codec that the client allows and that can carry one of `planes`.
+    std::optional<Codec> allowed_codec(std::span<const PlaneSemantic> planes) const {
+        for (const Codec codec : kAll<Codec>) {
+            const auto can_carry = [&](PlaneSemantic plane) { return carries(codec, usual_format(plane)); };
+            if (is_lossy(codec) && contains(bounds_.codecs(), wire::to_proto(codec)) &&
+                std::ranges::any_of(planes, can_carry)) {
+                return codec;
+            }
+        }
+        return std::nullopt;
+    }
 
     void add_codec() {
         const std::vector<wire::PlaneChoice>& pictures = ladder_.pictures_;
-        const auto lossy = std::ranges::find_if(pictures, is_lossy);
+        const auto lossy = std::ranges::find_if(pictures, is_encoded_lossy);
         quality_ = lossy == pictures.end() ? std::uint8_t{0} : lossy->encoding.quality;
-        if (std::ranges::all_of(pictures, is_lossy) || !allows_jpeg()) {
+        std::vector<PlaneSemantic> lossless;
+        for (const wire::PlaneChoice& picture : pictures) {
+            if (!is_encoded_lossy(picture)) {
+                lossless.push_back(picture.semantic);
+            }
+        }
+        const std::optional<Codec> codec = allowed_codec(lossless);
+        if (!codec) {
             return;
         }
         quality_ = quality_ > 0 ? quality_ : granted_.feed->info().lossy_quality;
-        Rung& rung = add(Rung::Step::kCodec, has_views_ ? kJpegShareOfViews : kJpegShareOfPlanes);
-        rung.is_jpeg = true;
+        Rung& rung = add(Rung::Step::kCodec, has_views_ ? kLossyShareOfViews : kLossyShareOfPlanes);
+        rung.codec = codec;
         rung.quality = quality_;
     }
 
@@ -162,19 +179,19 @@ private:
         }
         const feed::ChannelInfo& channel = granted_.feed->info();
         const wire::ViewSet& set = granted_.view_set;
-        constexpr double kIlluminationPlanes = 2.0;
-        const double planes = kIlluminationPlanes * channel.source_count * channel.source_width_px *
+        const std::vector<PlaneSemantic> light = planes_of(DeliveryMode::kScene, PlaneSet::kIllumination, {});
+        const double planes = static_cast<double>(light.size()) * channel.source_count * channel.source_width_px *
                               static_cast<double>(channel.source_height_px);
         const double views = static_cast<double>(set.grid.view_count()) * set.width_px * set.height_px;
         const Rung before = rungs_.back();
-        const double encoding = quality_ > 0 ? kJpegShareOfViews : 1.0;
+        const double encoding = quality_ > 0 ? kLossyShareOfViews : 1.0;
         const double cost = planes / views * encoding / before.rate_divisor;
         if (cost >= before.cost) {
             return;
         }
         rungs_.push_back({.cost = cost,
                           .step = Rung::Step::kMode,
-                          .is_jpeg = before.is_jpeg || (quality_ > 0 && allows_jpeg()),
+                          .codec = quality_ > 0 ? allowed_codec(light) : std::nullopt,
                           .is_scene = true,
                           .quality = quality_,
                           .rate_divisor = before.rate_divisor});
@@ -205,19 +222,19 @@ v1::Configure Ladder::configure(const Rung& rung) const {
         wanted.clear_modes();
         wanted.add_modes(v1::DELIVERY_MODE_SCENE);
         wanted.set_planes(v1::PLANE_SET_ILLUMINATION);
-        for (const PlaneSemantic plane : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {
-            if (rung.is_jpeg) {
-                set_codec(wanted, plane, v1::CODEC_JPEG, rung.quality);
+        for (const PlaneSemantic plane : planes_of(DeliveryMode::kScene, PlaneSet::kIllumination, {})) {
+            if (rung.codec) {
+                set_codec(wanted, plane, *rung.codec, rung.quality);
             }
         }
         return wanted;
     }
     for (const wire::PlaneChoice& picture : pictures_) {
         const codec::Encoding granted = picture.encoding;
-        if (rung.quality > 0 && is_lossy(picture)) {
-            set_codec(wanted, picture.semantic, wire::to_proto(granted.codec), std::min(rung.quality, granted.quality));
-        } else if (rung.is_jpeg) {
-            set_codec(wanted, picture.semantic, v1::CODEC_JPEG, rung.quality);
+        if (rung.quality > 0 && is_encoded_lossy(picture)) {
+            set_codec(wanted, picture.semantic, granted.codec, std::min(rung.quality, granted.quality));
+        } else if (rung.codec && carries(*rung.codec, wire::format_of(picture))) {
+            set_codec(wanted, picture.semantic, *rung.codec, rung.quality);
         }
     }
     if (rung.height_px > 0) {
@@ -238,7 +255,7 @@ std::string Ladder::change(const Rung& rung) const {
     case Rung::Step::kNone:
         break;
     case Rung::Step::kCodec:
-        return "JPEG of quality " + std::to_string(rung.quality);
+        return std::string(rung.codec ? word_of(*rung.codec) : "") + " of quality " + std::to_string(rung.quality);
     case Rung::Step::kQuality:
         return "quality " + std::to_string(rung.quality);
     case Rung::Step::kRate:
@@ -248,7 +265,7 @@ std::string Ladder::change(const Rung& rung) const {
     case Rung::Step::kGrid:
         return product(rung.rows, rung.cols) + " views";
     case Rung::Step::kMode:
-        return "mode SCENE";
+        return "mode " + std::string(word_of(DeliveryMode::kScene));
     }
     return "as asked for";
 }

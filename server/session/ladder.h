@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct Rung {
 
     double cost = 1.0; ///< bytes per second relative to what was asked for; an expectation
     Step step = Step::kNone;
-    bool is_jpeg = false;           ///< planes that were lossless and that JPEG can carry
+    std::optional<Codec> codec{};   ///< of planes that were lossless and that it can carry
     bool is_scene = false;          ///< mode SCENE
     std::uint8_t quality = 0;       ///< of planes in lossy codecs
     std::uint8_t rate_divisor = 1;  ///< of the frame rate
@@ -49,7 +50,7 @@ private:
     v1::Configure wanted_; ///< without what no rung needs
     ViewGrid grid_;        ///< spacing and anchor as granted
     float frames_per_second_ = 0.0F;
-    std::vector<wire::PlaneChoice> pictures_; ///< the planes that JPEG can carry, as granted
+    std::vector<wire::PlaneChoice> pictures_; ///< the planes that lossy codecs can carry, as granted
     std::vector<Rung> rungs_;
 };
 

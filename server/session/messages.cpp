@@ -20,27 +20,28 @@ glm::uvec2 largest_plane(PlaneSemantic semantic, const feed::ChannelInfo& channe
     return {channel.source_width_px + band.left_px + band.right_px, std::min(height_px * pages, kMaxPlaneSide)};
 }
 
-void add_planes(v1::Configured& message, const feed::PlanesWish& wish, const feed::ChannelInfo& channel) {
-    for (const wire::PlaneChoice& choice : wish.choices) {
-        v1::PlaneHeader& plane = *message.add_planes();
-        plane.set_semantic(wire::to_proto(choice.semantic));
-        plane.set_format(wire::to_proto(wire::format_of(choice)));
-        plane.set_codec(wire::to_proto(choice.encoding.codec));
-        plane.set_quality(choice.encoding.quality);
-        const glm::uvec2 size = largest_plane(choice.semantic, channel);
-        plane.set_width_px(size.x);
-        plane.set_height_px(size.y);
+void add_plane(v1::Configured& message, PlaneSemantic semantic, PlaneFormat format, const codec::Encoding& encoding,
+               glm::uvec2 size_px) {
+    v1::PlaneHeader& plane = *message.add_planes();
+    plane.set_semantic(wire::to_proto(semantic));
+    plane.set_format(wire::to_proto(format));
+    plane.set_codec(wire::to_proto(encoding.codec));
+    plane.set_quality(encoding.quality);
+    plane.set_width_px(size_px.x);
+    plane.set_height_px(size_px.y);
+}
+
+void add_planes(v1::Configured& message, const feed::PlaneSelection& selection, const feed::ChannelInfo& channel) {
+    for (const wire::PlaneChoice& choice : selection.choices) {
+        add_plane(message, choice.semantic, wire::format_of(choice), choice.encoding,
+                  largest_plane(choice.semantic, channel));
     }
 }
 
-void add_planes(v1::Configured& message, const feed::ViewsWish& wish, const feed::ChannelInfo&) {
-    v1::PlaneHeader& plane = *message.add_planes();
-    plane.set_semantic(v1::PLANE_SEMANTIC_COLOUR);
-    plane.set_format(v1::PLANE_FORMAT_RGB8);
-    plane.set_codec(wire::to_proto(wish.format.encoding.codec));
-    plane.set_quality(wish.format.encoding.quality);
-    plane.set_width_px(wish.format.width_px);
-    plane.set_height_px(wish.format.height_px);
+void add_planes(v1::Configured& message, const feed::ViewSelection& selection, const feed::ChannelInfo&) {
+    const wire::ViewFormat& format = selection.format;
+    add_plane(message, PlaneSemantic::kColour, usual_format(PlaneSemantic::kColour), format.encoding,
+              {format.width_px, format.height_px});
 }
 
 } // namespace
@@ -53,9 +54,9 @@ v1::Configured to_message(const Configuration& configuration, std::uint32_t requ
     message.set_epoch(epoch);
     message.set_channel(channel.name);
     message.set_scene_hash(channel.scene_hash.data(), channel.scene_hash.size());
-    message.set_mode(configuration.mode);
+    message.set_mode(wire::to_proto(configuration.mode));
     wire::to_proto(configuration.view_set, *message.mutable_view_set());
-    std::visit([&](const auto& wish) { add_planes(message, wish, channel); }, configuration.wish);
+    std::visit([&](const auto& selection) { add_planes(message, selection, channel); }, configuration.selection);
     wire::to_proto(channel.guard_band, *message.mutable_guard_band());
     message.set_frames_per_second(configuration.frames_per_second);
     message.set_max_bytes_in_flight(configuration.max_bytes_in_flight);

@@ -41,26 +41,42 @@ Chosen<std::shared_ptr<feed::Feed>> choose_channel(const std::string& wanted, Ch
     return refuse(v1::REFUSAL_REASON_NOT_FOUND, "channel", "there is no channel" + asked + "; there are: " + names);
 }
 
-Chosen<v1::DeliveryMode> choose_mode(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
-    if (wanted.modes().empty()) {
-        return v1::DELIVERY_MODE_VIEWS;
+bool offers(const feed::ChannelInfo& channel, DeliveryMode mode) {
+    return !row_of(mode).needs_one_source || channel.source_count == 1;
+}
+
+/// "views, scene; warp needs one source, it has 3".
+std::string offered_modes(const feed::ChannelInfo& channel) {
+    std::string offered;
+    std::string missing;
+    for (const DeliveryMode mode : kAll<DeliveryMode>) {
+        if (offers(channel, mode)) {
+            offered += (offered.empty() ? "" : ", ") + std::string(word_of(mode));
+        } else {
+            missing += "; " + std::string(word_of(mode)) + " needs one source, it has " +
+                       std::to_string(channel.source_count);
+        }
     }
-    const bool has_warp = channel.source_count == 1;
+    return offered + missing;
+}
+
+Chosen<DeliveryMode> choose_mode(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
+    if (wanted.modes().empty()) {
+        return DeliveryMode::kViews;
+    }
     std::string asked;
     for (const int number : wanted.modes()) {
-        const bool is_warp = number == v1::DELIVERY_MODE_WARP;
-        if (number == v1::DELIVERY_MODE_VIEWS || number == v1::DELIVERY_MODE_SCENE || (is_warp && has_warp)) {
-            return static_cast<v1::DeliveryMode>(number);
+        const auto mode = wire::from_proto(static_cast<v1::DeliveryMode>(number));
+        if (mode && offers(channel, *mode)) {
+            return *mode;
         }
         if (asked.size() < 256) {
-            asked += (asked.empty() ? "" : ", ") + (is_warp ? std::string("WARP") : std::to_string(number));
+            asked += (asked.empty() ? "" : ", ") + (mode ? std::string(word_of(*mode)) : std::to_string(number));
         }
     }
-    const std::string offered =
-        has_warp ? "VIEWS, SCENE and WARP"
-                 : "VIEWS and SCENE (WARP needs one source, it has " + std::to_string(channel.source_count) + ")";
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "modes",
-                  "mode " + asked + " is not supported by channel '" + channel.name + "'; it offers " + offered);
+                  "channel '" + channel.name + "' does not offer mode " + asked + "; it offers " +
+                      offered_modes(channel));
 }
 
 Chosen<ViewGrid> choose_grid(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
@@ -123,7 +139,7 @@ Chosen<float> choose_fovy(const v1::Configure& wanted, const feed::ChannelInfo& 
 }
 
 Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::ChannelInfo& channel,
-                                      v1::DeliveryMode mode, const Limits& limits) {
+                                      DeliveryMode mode, const Limits& limits) {
     const auto grid = choose_grid(wanted, channel);
     if (!grid) {
         return tl::unexpected(grid.error());
@@ -137,7 +153,7 @@ Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::C
         return tl::unexpected(fovy.error());
     }
     const std::uint64_t pixels = static_cast<std::uint64_t>(grid->view_count()) * size->x * size->y;
-    if (mode == v1::DELIVERY_MODE_VIEWS && pixels > limits.max_view_set_pixels) {
+    if (!is_made_by_client(mode) && pixels > limits.max_view_set_pixels) {
         return invalid("grid", std::to_string(pixels) + " pixels in all views asked, at most " +
                                    std::to_string(limits.max_view_set_pixels) + " allowed");
     }
@@ -150,22 +166,29 @@ Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, Pl
     if (preference == nullptr || preference->formats().empty()) {
         return std::nullopt;
     }
-    const PlaneFormat usual = wire::wire_format(semantic);
+    const PlaneFormat usual = usual_format(semantic);
     for (const int number : preference->formats()) {
         const auto format = wire::from_proto(static_cast<v1::PlaneFormat>(number));
-        if (format && wire::is_wire_format(semantic, *format)) {
+        if (format && may_have_format(semantic, *format)) {
             return format == usual ? std::nullopt : format;
         }
     }
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
-                  "no format asked for plane " + v1::PlaneSemantic_Name(wire::to_proto(semantic)) +
-                      " is supported; " + v1::PlaneFormat_Name(wire::to_proto(usual)) + " is");
+                  "no format asked for plane " + std::string(word_of(semantic)) +
+                      " is supported; " + std::string(word_of(usual)) + " is");
 }
 
 /// A recording has the qualities that it has; channels that encode keep to few.
 std::uint8_t choose_quality(std::uint32_t asked, const feed::ChannelInfo& channel) {
     const bool is_recorded = !channel.recorded.empty() && asked != 0;
     return is_recorded ? static_cast<std::uint8_t>(asked) : quality_rung(asked, channel.lossy_quality);
+}
+
+/// "raw or zstd".
+std::string codecs_for_every_plane() {
+    std::vector<Codec> codecs(kAll<Codec>.begin(), kAll<Codec>.end());
+    std::erase_if(codecs, [](Codec codec) { return !row_of(codec).only.empty(); });
+    return alternatives<Codec>(codecs);
 }
 
 /// The first codec wanted for that plane that we have, at the quality wanted.
@@ -175,54 +198,25 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
     if (preference == nullptr || preference->codecs().empty()) {
         return codec::Encoding{};
     }
-    if (preference->quality() > codec::kMaxQuality) {
+    if (preference->quality() > kMaxQuality) {
         return invalid("codecs", "quality " + std::to_string(preference->quality()) + " asked, 1 to " +
-                                     std::to_string(codec::kMaxQuality) + " allowed, 0: the server's choice");
+                                     std::to_string(kMaxQuality) + " allowed, 0: the server's choice");
     }
     for (const int number : preference->codecs()) {
         const auto codec = wire::from_proto(static_cast<v1::Codec>(number));
-        if (codec && codec::fits(*codec, wire::wire_format(semantic))) {
+        if (codec && carries(*codec, usual_format(semantic))) {
             const std::uint8_t quality = choose_quality(preference->quality(), channel);
-            return codec::Encoding{*codec, codec::is_lossy(*codec) ? quality : std::uint8_t{0}};
+            return codec::Encoding{*codec, is_lossy(*codec) ? quality : std::uint8_t{0}};
         }
     }
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
-                  "no codec asked for plane " + v1::PlaneSemantic_Name(wire::to_proto(semantic)) +
-                      " is supported; ZSTD_FILTERED and RAW are for every plane");
+                  "no codec asked for plane " + std::string(word_of(semantic)) +
+                      " is supported; every plane can have " + codecs_for_every_plane());
 }
 
-std::vector<PlaneSemantic> scene_planes(const v1::Configure& wanted) {
-    if (wanted.planes() == v1::PLANE_SET_TOTAL_LIGHT) {
-        return {PlaneSemantic::kTotalLight};
-    }
-    if (wanted.planes() != v1::PLANE_SET_WITH_G_BUFFER) {
-        return {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular};
-    }
-    return {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular, PlaneSemantic::kDepth,
-            PlaneSemantic::kNormal,  PlaneSemantic::kId,       PlaneSemantic::kMaterial};
-}
-
-std::vector<PlaneSemantic> warp_planes(const v1::Configure& wanted) {
-    const auto is_wanted = [&](v1::WarpPlane plane) {
-        return std::ranges::find(wanted.warp_planes(), static_cast<int>(plane)) != wanted.warp_planes().end();
-    };
-    std::vector<PlaneSemantic> planes{PlaneSemantic::kColour, PlaneSemantic::kInverseDepth};
-    if (is_wanted(v1::WARP_PLANE_RESIDUAL)) {
-        planes.push_back(PlaneSemantic::kResidualColour);
-        planes.push_back(PlaneSemantic::kResidualInverseDepth);
-    }
-    if (is_wanted(v1::WARP_PLANE_NORMAL)) {
-        planes.push_back(PlaneSemantic::kNormal);
-    }
-    if (is_wanted(v1::WARP_PLANE_ID)) {
-        planes.push_back(PlaneSemantic::kId);
-    }
-    return planes;
-}
-
-Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel,
+Chosen<feed::Selection> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel,
                                  std::span<const PlaneSemantic> semantics) {
-    feed::PlanesWish wish;
+    feed::PlaneSelection selection;
     for (const PlaneSemantic semantic : semantics) {
         const auto encoding = choose_encoding(wanted, semantic, channel);
         if (!encoding) {
@@ -232,29 +226,26 @@ Chosen<feed::Wish> choose_planes(const v1::Configure& wanted, const feed::Channe
         if (!format) {
             return tl::unexpected(format.error());
         }
-        wish.choices.push_back({.semantic = semantic, .encoding = *encoding, .format = *format});
+        selection.choices.push_back({.semantic = semantic, .encoding = *encoding, .format = *format});
     }
-    return wish;
+    return selection;
 }
 
-Chosen<feed::Wish> choose_wish(const v1::Configure& wanted, const feed::ChannelInfo& channel, v1::DeliveryMode mode,
-                               const wire::ViewSet& set) {
-    if (mode == v1::DELIVERY_MODE_SCENE) {
-        return choose_planes(wanted, channel, scene_planes(wanted));
-    }
-    if (mode == v1::DELIVERY_MODE_WARP) {
-        return choose_planes(wanted, channel, warp_planes(wanted));
+Chosen<feed::Selection> choose_selection(const v1::Configure& wanted, const feed::ChannelInfo& channel,
+                                         DeliveryMode mode, const wire::ViewSet& set) {
+    if (is_made_by_client(mode)) {
+        return choose_planes(wanted, channel, asked_planes(wanted, mode));
     }
     const auto encoding = choose_encoding(wanted, PlaneSemantic::kColour, channel);
     if (!encoding) {
         return tl::unexpected(encoding.error());
     }
-    return feed::ViewsWish{.format = {.geometry = set.grid.geometry,
-                                      .fovy_rad = set.fovy_rad,
-                                      .width_px = set.width_px,
-                                      .height_px = set.height_px,
-                                      .encoding = *encoding},
-                           .grid = set.grid};
+    return feed::ViewSelection{.format = {.geometry = set.grid.geometry,
+                                          .fovy_rad = set.fovy_rad,
+                                          .width_px = set.width_px,
+                                          .height_px = set.height_px,
+                                          .encoding = *encoding},
+                               .grid = set.grid};
 }
 
 Chosen<float> choose_rate(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
@@ -281,6 +272,17 @@ Chosen<std::uint32_t> choose_chunk_bytes(const v1::Configure& wanted, const Limi
 
 } // namespace
 
+std::vector<PlaneSemantic> asked_planes(const v1::Configure& wanted, DeliveryMode mode) {
+    std::vector<WarpPlane> extra;
+    for (const WarpPlane plane : kAll<WarpPlane>) {
+        if (std::ranges::find(wanted.warp_planes(), static_cast<int>(plane)) != wanted.warp_planes().end()) {
+            extra.push_back(plane);
+        }
+    }
+    const auto set = from_number<PlaneSet>(static_cast<std::uint64_t>(wanted.planes()));
+    return planes_of(mode, set.value_or(PlaneSet::kIllumination), extra);
+}
+
 const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
     const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
                                          [](const v1::CodecPreference& p) { return p.semantic(); });
@@ -302,11 +304,11 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Chann
     if (!view_set) {
         return tl::unexpected(view_set.error());
     }
-    auto wish = choose_wish(wanted, info, *mode, *view_set);
-    if (!wish) {
-        return tl::unexpected(wish.error());
+    auto selection = choose_selection(wanted, info, *mode, *view_set);
+    if (!selection) {
+        return tl::unexpected(selection.error());
     }
-    if (auto problem = recorded_problem(*wish, info)) {
+    if (auto problem = recorded_problem(*selection, info)) {
         return refuse(v1::REFUSAL_REASON_UNSUPPORTED, std::move(problem->field), std::move(problem->message));
     }
     const auto rate = choose_rate(wanted, info);
@@ -322,7 +324,7 @@ tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Chann
     return Configuration{.feed = *channel,
                          .mode = *mode,
                          .view_set = *view_set,
-                         .wish = std::move(*wish),
+                         .selection = std::move(*selection),
                          .frames_per_second = *rate,
                          .max_bytes_in_flight = std::min(bytes, limits.max_bytes_in_flight),
                          .chunk_bytes = *chunk_bytes,

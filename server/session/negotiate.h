@@ -11,15 +11,16 @@
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 namespace fieldcast::session {
 
 /// What a client gets: the chosen values for everything that a Configure may leave open.
 struct Configuration {
     std::shared_ptr<feed::Feed> feed;
-    v1::DeliveryMode mode = v1::DELIVERY_MODE_VIEWS;
+    DeliveryMode mode = DeliveryMode::kViews;
     wire::ViewSet view_set;
-    feed::Wish wish;
+    feed::Selection selection;
     float frames_per_second = 30.0F;
     std::uint64_t max_bytes_in_flight = 0;
     std::uint32_t chunk_bytes = wire::kDefaultChunkBytes;
@@ -36,6 +37,9 @@ using Channels = std::span<const std::shared_ptr<feed::Feed>>;
 
 /// Chooses a configuration, or says what is wrong. Only looks: admission is up to the feed.
 tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits);
+
+/// The planes that a client gets of every frame in that mode, in their order.
+std::vector<PlaneSemantic> asked_planes(const v1::Configure& wanted, DeliveryMode mode);
 
 /// What is wanted for that plane; null: nothing in particular.
 const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic);

@@ -33,7 +33,7 @@ std::optional<std::size_t> rank_of(const wire::PlaneChoice& recorded, const v1::
     if (preference == nullptr || preference->codecs().empty()) {
         return place_in(kUnasked);
     }
-    const bool has_quality = preference->quality() == 0 || !codec::is_lossy(recorded.encoding.codec) ||
+    const bool has_quality = preference->quality() == 0 || !is_lossy(recorded.encoding.codec) ||
                              preference->quality() == recorded.encoding.quality;
     return has_quality ? place_in(preference->codecs()) : std::nullopt;
 }
@@ -52,12 +52,12 @@ void ask_for(const wire::PlaneChoice& recorded, v1::Configure& wanted) {
     only.add_formats(wire::to_proto(wire::format_of(recorded)));
 }
 
-wire::PlaneChoice colour_of(const feed::ViewsWish& recorded) {
+wire::PlaneChoice colour_of(const feed::ViewSelection& recorded) {
     return {.semantic = PlaneSemantic::kColour, .encoding = recorded.format.encoding};
 }
 
 /// Whether everything that `wanted` says about views fits that recording.
-bool fits(const v1::Configure& wanted, const feed::ViewsWish& recorded, const feed::ChannelInfo& channel) {
+bool fits(const v1::Configure& wanted, const feed::ViewSelection& recorded, const feed::ChannelInfo& channel) {
     const wire::ViewFormat& format = recorded.format;
     const bool has_size = wanted.view_width_px() == 0 && wanted.view_height_px() == 0;
     if (!has_size && (wanted.view_width_px() != format.width_px || wanted.view_height_px() != format.height_px)) {
@@ -73,14 +73,14 @@ bool fits(const v1::Configure& wanted, const feed::ViewsWish& recorded, const fe
     }
     const auto grid = wire::from_proto(wanted.grid(), channel.largest_grid.geometry);
     return grid && grid->geometry == format.geometry &&
-           feed::covers(channel.recorded, feed::ViewsWish{.format = format, .grid = *grid});
+           feed::covers(channel.recorded, feed::ViewSelection{.format = format, .grid = *grid});
 }
 
 bool narrow_views(v1::Configure& wanted, const feed::ChannelInfo& channel) {
-    const feed::ViewsWish* best = nullptr;
+    const feed::ViewSelection* best = nullptr;
     std::optional<std::size_t> best_rank;
-    for (const feed::Wish& wish : channel.recorded) {
-        const auto* const recorded = std::get_if<feed::ViewsWish>(&wish);
+    for (const feed::Selection& selection : channel.recorded) {
+        const auto* const recorded = std::get_if<feed::ViewSelection>(&selection);
         if (recorded == nullptr || !fits(wanted, *recorded, channel)) {
             continue;
         }
@@ -103,27 +103,32 @@ bool narrow_views(v1::Configure& wanted, const feed::ChannelInfo& channel) {
     return true;
 }
 
-bool is_asked(const v1::Configure& wanted, PlaneSemantic semantic) {
-    const bool is_light = semantic == PlaneSemantic::kDiffuse || semantic == PlaneSemantic::kSpecular;
-    return is_light || wanted.planes() == v1::PLANE_SET_WITH_G_BUFFER;
-}
-
-bool narrow_planes(v1::Configure& wanted, const feed::ChannelInfo& channel) {
-    for (const feed::Wish& wish : channel.recorded) {
-        const auto* const recorded = std::get_if<feed::PlanesWish>(&wish);
-        if (recorded == nullptr || !std::ranges::all_of(recorded->choices, [&](const wire::PlaneChoice& choice) {
-                return !is_asked(wanted, choice.semantic) || rank_of(choice, wanted).has_value();
+/// Of a mode whose clients make their own views.
+bool narrow_planes(v1::Configure& wanted, const feed::ChannelInfo& channel, DeliveryMode mode) {
+    const std::vector<PlaneSemantic> asked = asked_planes(wanted, mode);
+    const auto is_asked = [&](const wire::PlaneChoice& choice) {
+        return std::ranges::find(asked, choice.semantic) != asked.end();
+    };
+    for (const feed::Selection& selection : channel.recorded) {
+        const auto* const recorded = std::get_if<feed::PlaneSelection>(&selection);
+        if (recorded == nullptr || std::ranges::none_of(recorded->choices, is_asked) ||
+            !std::ranges::all_of(recorded->choices, [&](const wire::PlaneChoice& choice) {
+                return !is_asked(choice) || rank_of(choice, wanted).has_value();
             })) {
             continue;
         }
         for (const wire::PlaneChoice& choice : recorded->choices) {
-            if (is_asked(wanted, choice.semantic)) {
+            if (is_asked(choice)) {
                 ask_for(choice, wanted);
             }
         }
         return true;
     }
     return false;
+}
+
+bool narrow(v1::Configure& wanted, const feed::ChannelInfo& channel, DeliveryMode mode) {
+    return is_made_by_client(mode) ? narrow_planes(wanted, channel, mode) : narrow_views(wanted, channel);
 }
 
 } // namespace
@@ -135,31 +140,30 @@ v1::Configure narrowed(v1::Configure wanted, const feed::ChannelInfo& channel) {
     const std::vector<int> modes = wanted.modes().empty()
                                        ? std::vector<int>{v1::DELIVERY_MODE_VIEWS}
                                        : std::vector<int>(wanted.modes().begin(), wanted.modes().end());
-    for (const int mode : modes) {
-        const bool is_found = (mode == v1::DELIVERY_MODE_VIEWS && narrow_views(wanted, channel)) ||
-                              (mode == v1::DELIVERY_MODE_SCENE && narrow_planes(wanted, channel));
-        if (is_found) {
+    for (const int number : modes) {
+        const auto mode = wire::from_proto(static_cast<v1::DeliveryMode>(number));
+        if (mode && narrow(wanted, channel, *mode)) {
             wanted.clear_modes();
-            wanted.add_modes(static_cast<v1::DeliveryMode>(mode));
+            wanted.add_modes(wire::to_proto(*mode));
             break;
         }
     }
     return wanted;
 }
 
-std::optional<RecordedProblem> recorded_problem(const feed::Wish& wish, const feed::ChannelInfo& channel) {
-    if (channel.recorded.empty() || feed::covers(channel.recorded, wish)) {
+std::optional<RecordedProblem> recorded_problem(const feed::Selection& selection, const feed::ChannelInfo& channel) {
+    if (channel.recorded.empty() || feed::covers(channel.recorded, selection)) {
         return std::nullopt;
     }
     std::string recorded;
     bool has_mode = false;
-    for (const feed::Wish& one : channel.recorded) {
+    for (const feed::Selection& one : channel.recorded) {
         recorded += (recorded.empty() ? "" : "; ") + feed::to_text(one);
-        has_mode = has_mode || one.index() == wish.index();
+        has_mode = has_mode || one.index() == selection.index();
     }
-    const bool wants_planes = std::holds_alternative<feed::PlanesWish>(wish);
+    const bool wants_planes = std::holds_alternative<feed::PlaneSelection>(selection);
     return RecordedProblem{.field = !has_mode ? "modes" : wants_planes ? "planes" : "grid",
-                           .message = "channel '" + channel.name + "' is a recording without " + feed::to_text(wish) +
+                           .message = "channel '" + channel.name + "' is a recording without " + feed::to_text(selection) +
                                       "; recorded: " + recorded};
 }
 

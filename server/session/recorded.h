@@ -20,7 +20,7 @@ struct RecordedProblem {
     std::string message;
 };
 
-/// Why `wish` cannot be had, naming what was recorded; nothing if it can.
-std::optional<RecordedProblem> recorded_problem(const feed::Wish& wish, const feed::ChannelInfo& channel);
+/// Why `selection` cannot be had, naming what was recorded; nothing if it can.
+std::optional<RecordedProblem> recorded_problem(const feed::Selection& selection, const feed::ChannelInfo& channel);
 
 } // namespace fieldcast::session

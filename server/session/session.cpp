@@ -104,7 +104,7 @@ void Session::on_frame(const feed::FramePtr& frame, TimePoint now) {
     }
     const TimePoint begun = frame->begun.value_or(now);
     const bool had_room = !is_full_ && begun >= has_room_since_;
-    const bool is_covered = feed::covers(*frame, configuration_->wish);
+    const bool is_covered = feed::covers(*frame, configuration_->selection);
     if (!is_covered && !had_room) {
         return miss_frame(*frame, is_full_ ? waiting_reason() : full_because_);
     }
@@ -256,7 +256,7 @@ void Session::begin_frame(TimePoint now) {
         return;
     }
     const feed::EncodedFrame& newest = **mailbox_.peek();
-    if (!has_key_frame_of(newest) && !feed::stands_alone(newest, configuration_->wish)) {
+    if (!has_key_frame_of(newest) && !feed::stands_alone(newest, configuration_->selection)) {
         set_key_frame(0);
         mailbox_.take();
         counts_.drops.add(DropReason::kNoKeyFrame);
@@ -284,7 +284,7 @@ void Session::begin_frame(TimePoint now) {
 std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::EncodedFrame& frame,
                                                                    const wire::WireFrame& chunks) const {
     std::map<wire::PlaneChoice, std::uint64_t> bytes;
-    if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+    if (const auto* planes = std::get_if<feed::PlaneSelection>(&configuration_->selection)) {
         const bool has_key_frame = has_key_frame_of(frame);
         for (const wire::PlaneChoice& choice : planes->choices) {
             for (const wire::EncodedStrip& strip : frame.source->find(choice)->strips) {
@@ -293,7 +293,7 @@ std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::E
         }
         return bytes;
     }
-    const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
+    const auto& views = std::get<feed::ViewSelection>(configuration_->selection);
     bytes[{.semantic = PlaneSemantic::kColour, .encoding = views.format.encoding}] = chunks.payload_bytes;
     return bytes;
 }
@@ -301,10 +301,10 @@ std::map<wire::PlaneChoice, std::uint64_t> Session::plane_bytes_of(const feed::E
 wire::WireFrame Session::chunks_of(const feed::EncodedFrame& frame) const {
     const wire::ChunkOptions options{
         .epoch = epoch_, .chunk_bytes = configuration_->chunk_bytes, .has_key_frame = has_key_frame_of(frame)};
-    if (const auto* planes = std::get_if<feed::PlanesWish>(&configuration_->wish)) {
+    if (const auto* planes = std::get_if<feed::PlaneSelection>(&configuration_->selection)) {
         return wire::source_chunks(*frame.source, planes->choices, options);
     }
-    const auto& views = std::get<feed::ViewsWish>(configuration_->wish);
+    const auto& views = std::get<feed::ViewSelection>(configuration_->selection);
     return wire::view_chunks(*feed::find_views(frame, views.format), views.grid, options);
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// Pixels of the views that the server makes for a client.
 std::uint64_t made_pixels(const Configuration& configuration) {
     const wire::ViewSet& set = configuration.view_set;
-    const bool makes_views = configuration.mode == v1::DELIVERY_MODE_VIEWS;
+    const bool makes_views = !is_made_by_client(configuration.mode);
     return makes_views ? static_cast<std::uint64_t>(set.grid.view_count()) * set.width_px * set.height_px : 0;
 }
 
@@ -33,7 +33,7 @@ Refusal exhausted(std::string field, std::string message) {
 
 /// What a client changes about it when the channel encodes as much as it may.
 const char* budget_field(const Configuration& wanted) {
-    return wanted.mode == v1::DELIVERY_MODE_VIEWS ? "grid" : "codecs";
+    return is_made_by_client(wanted.mode) ? "codecs" : "grid";
 }
 
 } // namespace
@@ -109,10 +109,10 @@ std::optional<Refusal> Session::subscribe(Configuration& wanted) {
         wanted.feed = opened.feed();
     }
     if (subscription_.feed() == wanted.feed) {
-        auto problem = subscription_.change(wanted.wish, pace_of(wanted));
+        auto problem = subscription_.change(wanted.selection, pace_of(wanted));
         return problem ? std::optional(exhausted(budget_field(wanted), std::move(*problem))) : std::nullopt;
     }
-    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.wish, on_frame_, pace_of(wanted));
+    auto subscription = feed::Feed::subscribe(wanted.feed, wanted.selection, on_frame_, pace_of(wanted));
     if (!subscription) {
         count_camera();
         return exhausted(budget_field(wanted), std::move(subscription.error()));
@@ -144,11 +144,11 @@ tl::expected<feed::OwnFeed, Refusal> Session::open_own_feed(const Configuration&
 
 std::optional<Refusal> Session::change_own_feed(Configuration& wanted) {
     wanted.feed = own_feed_.feed();
-    if (auto problem = subscription_.change(wanted.wish, pace_of(wanted))) {
+    if (auto problem = subscription_.change(wanted.selection, pace_of(wanted))) {
         return exhausted(budget_field(wanted), std::move(*problem));
     }
     if (auto problem = own_feed_.change(load_of(wanted))) {
-        subscription_.change(configuration_->wish, pace_); // fits: nobody else is there
+        subscription_.change(configuration_->selection, pace_); // fits: nobody else is there
         return exhausted("channel", std::move(*problem));
     }
     return std::nullopt;

@@ -95,9 +95,9 @@ void SteeringDesk::handle(const v1::RequestSteering& message, TimePoint now) {
     if (!is_at_camera()) {
         return deny(v1::STEERING_DENIAL_REASON_NOT_STEERABLE, "configure a channel whose camera is steered first", 0);
     }
-    seat_.request(message.takes()   ? feed::SteeringWish::kTake
-                  : message.waits() ? feed::SteeringWish::kWait
-                                    : feed::SteeringWish::kNow,
+    seat_.request(message.takes()   ? feed::SteeringUrgency::kTake
+                  : message.waits() ? feed::SteeringUrgency::kWait
+                                    : feed::SteeringUrgency::kNow,
                   now);
     collect(now);
 }

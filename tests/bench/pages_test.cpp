@@ -41,7 +41,7 @@ Json origin_of_result() {
 
 Json quality_result() {
     Json result = origin_of_result();
-    result["rows"] = {{"1 spp", quality_row(0.4)}, {"<svgf>", quality_row(0.2)}, {"ours", quality_row(0.1)}};
+    result["rows"] = {{"1 spp", quality_row(0.4)}, {"<svgf>", quality_row(0.2)}, {"default", quality_row(0.1)}};
     return result;
 }
 
@@ -63,7 +63,7 @@ TEST(QualityPage, SaysWhatWasMeasured) {
     const std::string html = quality_page(quality_result(), {}).html();
     EXPECT_EQ(test::html_problem(html), "");
     EXPECT_THAT(html, HasSubstr("<h1>&lt;Hall&gt;: quality of views</h1>"));
-    EXPECT_THAT(html, HasSubstr("ours has a root mean squared error of 0.1000, 0.25 of that of 1 spp"));
+    EXPECT_THAT(html, HasSubstr("default has a root mean squared error of 0.1000, 0.25 of that of 1 spp"));
     EXPECT_THAT(html, HasSubstr("a &lt;device&gt; &amp; driver"));
     EXPECT_THAT(html, HasSubstr("0123abc"));
     for (const char* absent : {"Over time", "As a light field", "Pictures", "FLIP", "Holes", "Moving objects"}) {
@@ -77,11 +77,11 @@ TEST(QualityPage, ShowsPartsAndPicturesThatAreThere) {
     const image::RgbF32 picture{32, 18, std::vector<glm::vec3>(32 * 18, glm::vec3(0.1F))};
     const std::string html =
         quality_page(result, {{29, {6, 6}},
-                              {{"1 spp", picture}, {"<svgf>", picture}, {"ours", picture}, {kReferenceName, picture}}})
+                              {{"1 spp", picture}, {"<svgf>", picture}, {"default", picture}, {kReferenceName, picture}}})
             .html();
     EXPECT_EQ(test::html_problem(html), "");
     for (const char* present : {"Over time", "As a light field", "Pictures", "FLIP", "View (5, 5) of 6×6 in frame 29",
-                                "error of &lt;svgf&gt;", "SSIM of each view, ours", ">∞<", ">2.5 m<"}) {
+                                "error of &lt;svgf&gt;", "SSIM of each view, default", ">∞<", ">2.5 m<"}) {
         EXPECT_THAT(html, HasSubstr(present));
     }
     EXPECT_THAT(html, Not(HasSubstr("error of reference")));
@@ -93,10 +93,10 @@ TEST(QualityTable, HasALineForEachRow) {
     std::ostringstream stream;
     print_quality_table(stream, result);
     EXPECT_THAT(stream.str(), HasSubstr("1.25 %"));
-    EXPECT_THAT(stream.str(), HasSubstr("SSIM of the views, ours"));
+    EXPECT_THAT(stream.str(), HasSubstr("SSIM of the views, default"));
     const auto rows = quality_csv_rows(result);
     ASSERT_EQ(rows.size(), 3U);
-    EXPECT_EQ(rows[2]["input"], "ours");
+    EXPECT_EQ(rows[2]["input"], "default");
     EXPECT_EQ(rows[2]["rmse"], 0.1); // not the light field's own
     EXPECT_EQ(rows[2]["epi_ssim"], 0.6);
     EXPECT_EQ(rows[2]["flip"], 0.2);
@@ -145,7 +145,7 @@ TEST(FramePage, GroupsStagesAsThePaperDoes) {
 
 TEST(GridsPage, ShowsAllGridsInOneScale) {
     Json result = origin_of_result();
-    result["preset"] = "ours";
+    result["preset"] = "default";
     result["frames"] = {29};
     result["ssim_lost"] = 0.0125;
     for (const auto& [name, ssim] : {std::pair("1x2", 0.75), std::pair("2x2", 0.5)}) {

@@ -105,7 +105,7 @@ class Program(unittest.TestCase):
         lossless = {(part, coding) for part in parts for coding in ("raw", "zstd", "zstd, key frame")}
         lossy = {(part, f"jpeg {quality}") for part in ("diffuse", "specular", "light", "view") for quality in (30, 90)}
         lossy |= {("view", f"h264 {quality}{alone}") for quality in (30, 90) for alone in ("", " alone")}
-        merged = {("total light", coding) for coding in ("raw", "zstd", "jpeg 30", "jpeg 90")}
+        merged = {("total_light", coding) for coding in ("raw", "zstd", "jpeg 30", "jpeg 90")}
         self.assertEqual(lossless | lossy | merged | {("normal", "zstd, oct2x8")}, set(rows))
         number = lambda part, coding, column: float(rows[part, coding][column])
         for part in ("light", "view"):
@@ -115,8 +115,8 @@ class Program(unittest.TestCase):
             self.assertLess(number(part, "jpeg 90", "ssim"), 1.0)
             self.assertEqual("", rows[part, "zstd"]["ssim"])
         self.assertEqual(0.0, number("light", "jpeg 30", "discard_points"))  # geometry is what discards
-        self.assertTrue(0.98 < number("total light", "zstd", "ssim") < 1.0)  # measured 0.998 on Sponza
-        self.assertEqual(0.0, number("total light", "jpeg 30", "discard_points"))
+        self.assertTrue(0.98 < number("total_light", "zstd", "ssim") < 1.0)  # measured 0.998 on Sponza
+        self.assertEqual(0.0, number("total_light", "jpeg 30", "discard_points"))
         self.assertLess(number("normal", "zstd, oct2x8", "bytes"), number("normal", "zstd", "bytes"))
         turned = json.loads((self.folder / "codecs.json").read_text())["coarse_normals_deg"]
         self.assertTrue(0.0 < turned["mean"] < turned["max"] < 1.0, turned)  # core/image/packing.h has the bound
@@ -142,12 +142,12 @@ class Program(unittest.TestCase):
 
     def test_quality_with_everything(self):
         out = self.folder / "out"
-        done = call("quality", *self.references, "--presets", "ours", "--temporal", "--light-field", "--out", out,
+        done = call("quality", *self.references, "--presets", "default", "--temporal", "--light-field", "--out", out,
                     "--csv", self.folder / "a.csv", "--html", self.folder / "a.html")
         self.expect_good(done)
         result = json.loads((out / "quality.json").read_text())
         self.assertAlmostEqual(3.1, result["exposure"], places=5)  # bench/scenes/atelier.json
-        noisy, ours = result["rows"]["1 spp"], result["rows"]["ours"]
+        noisy, ours = result["rows"]["1 spp"], result["rows"]["default"]
         self.assertTrue(0.0 < ours["rmse"] < noisy["rmse"] < 1.0, result["rows"])
         self.assertTrue(0.0 < ours["temporal"]["flicker"] < noisy["temporal"]["flicker"])
         self.assertIsNone(ours["temporal"]["warped_error_excess"])  # no references of the frames before
@@ -161,8 +161,8 @@ class Program(unittest.TestCase):
 
     def check_table(self, result):
         rows = self.table("a.csv")
-        self.assertEqual(["1 spp", "ours"], [row["input"] for row in rows])
-        self.assertAlmostEqual(result["rows"]["ours"]["rmse"], float(rows[1]["rmse"]), places=5)
+        self.assertEqual(["1 spp", "default"], [row["input"] for row in rows])
+        self.assertAlmostEqual(result["rows"]["default"]["rmse"], float(rows[1]["rmse"]), places=5)
         self.assertEqual("", rows[0]["rmse_holes"])
         self.assertEqual("", rows[0]["flip"])
 

@@ -151,7 +151,7 @@ void write_recordings(const fs::path& folder) {
     };
     const scene::TempFolder files;
     const fs::path file = files.write("a.fcrec", std::string());
-    for (const Kind& kind : {Kind{"views", {"views:1x2", "views:2x2:8x4:jpeg:50"}}, Kind{"planes", {"planes:jpeg"}},
+    for (const Kind& kind : {Kind{"views", {"views:1x2", "views:2x2:8x4:jpeg:50"}}, Kind{"planes", {"illumination:jpeg"}},
                              Kind{"both", {"views:1x1:raw", "g-buffer"}}}) {
         test::write_synthetic_recording(file, kind.forms, 2, info);
         write(folder / "recording" / kind.name, '\1' + records_of(file));

@@ -60,8 +60,8 @@ void expect_round_trip(const feed::EncodedFrame& frame, const recording::FrameMa
 void read_everything(const std::filesystem::path& file) {
     recording::Recording recording(file);
     feed::Demand demand;
-    for (const feed::Wish& wish : recording.info().recorded) {
-        feed::add(demand, wish);
+    for (const feed::Selection& selection : recording.info().recorded) {
+        feed::add(demand, selection);
     }
     for (std::size_t i = 0; i < recording.frames().size(); ++i) {
         if (const auto frame = recording.read(i)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An input is a byte for the client's wish and a row of pieces, each a ServerMessage.
+// An input is a byte for the client's request and a row of pieces, each a ServerMessage.
 #include "client/net/clock_sync.h"
 #include "client/net/configure.h"
 #include "tests/fuzz/received_chunks.h"
@@ -17,13 +17,13 @@ constexpr std::uint64_t kMaxFrameBytes = 4U << 20; ///< a client takes 1 GiB; th
 /// What a client does with the messages of a server.
 class Client {
 public:
-    explicit Client(std::uint8_t wish) {
-        wish_.mode = (wish & 1U) != 0 ? net::Mode::kScene : (wish & 2U) != 0 ? net::Mode::kWarp : net::Mode::kViews;
-        if ((wish & 4U) != 0) {
-            wish_.adaptation.emplace();
+    explicit Client(std::uint8_t request) {
+        request_.mode = (request & 1U) != 0 ? DeliveryMode::kScene : (request & 2U) != 0 ? DeliveryMode::kWarp : DeliveryMode::kViews;
+        if ((request & 4U) != 0) {
+            request_.adaptation.emplace();
         }
-        wish_.codecs = {codec::CodecId::kH264, codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered,
-                        codec::CodecId::kRaw};
+        request_.codecs = {Codec::kH264, Codec::kJpeg, Codec::kZstdFiltered,
+                        Codec::kRaw};
     }
 
     void take(v1::ServerMessage message) {
@@ -51,10 +51,10 @@ private:
     /// The client asks for the grid that it gets, or nothing would be looked at further.
     void configure(const v1::Configured& message) {
         const v1::Grid& grid = message.view_set().grid();
-        wish_.rows = grid.rows();
-        wish_.cols = grid.cols();
-        wish_.anchor = grid.anchor() == v1::ANCHOR_CENTRE ? Anchor::kCentre : Anchor::kLattice;
-        const auto agreement = net::from_configured(message, wish_);
+        request_.rows = grid.rows();
+        request_.cols = grid.cols();
+        request_.anchor = grid.anchor() == v1::ANCHOR_CENTRE ? Anchor::kCentre : Anchor::kLattice;
+        const auto agreement = net::from_configured(message, request_);
         if (!agreement) {
             FC_ASSERT(!agreement.error().message.empty(), "an error says what is wrong");
             return;
@@ -85,7 +85,7 @@ private:
         FC_ASSERT(clock_.round_trip_ns().value_or(0) >= 0, "no answer before its question");
     }
 
-    net::Wish wish_;
+    net::Request request_;
     std::optional<net::Agreement> agreement_;
     ReceivedChunks chunks_;
     net::ClockSync clock_;

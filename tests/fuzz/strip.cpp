@@ -27,13 +27,13 @@ void expect_only_band_changed(const Plane& plane, codec::RowBand band, std::byte
     FC_ASSERT(std::ranges::all_of(above, is_same) && std::ranges::all_of(below, is_same), "rows outside the band");
 }
 
-void decode(Bytes input, const codec::StripHeader& header, codec::CodecId codec, Plane& plane) {
+void decode(Bytes input, const codec::StripHeader& header, Codec codec, Plane& plane) {
     constexpr std::byte kBefore{0x5A};
     Plane reference = plane;
     fill(reference);
     std::vector<std::byte> base;
     if (header.is_predicted && plane.format == PlaneFormat::kRgb8) {
-        base = codec::encode_strip(reference, header.band, {.encoding = {codec::CodecId::kH264, 75}});
+        base = codec::encode_strip(reference, header.band, {.encoding = {Codec::kH264, 75}});
     }
     for (const Plane* const known : {static_cast<const Plane*>(nullptr), static_cast<const Plane*>(&reference)}) {
         std::ranges::fill(plane.bytes, kBefore);
@@ -60,12 +60,12 @@ void strip(Bytes input) {
     if (!plane || header->band.row_count == 0) {
         return;
     }
-    decode(input, *header, codec::CodecId::kZstdFiltered, *plane);
+    decode(input, *header, Codec::kZstdFiltered, *plane);
     if (header->coding == codec::StripCoding::kJpeg) {
-        decode(input, *header, codec::CodecId::kJpeg, *plane);
+        decode(input, *header, Codec::kJpeg, *plane);
     }
     if (header->coding == codec::StripCoding::kH264 && plane->format == PlaneFormat::kRgb8) {
-        decode(input, *header, codec::CodecId::kH264, *plane);
+        decode(input, *header, Codec::kH264, *plane);
     }
 }
 

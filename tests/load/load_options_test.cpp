@@ -26,8 +26,8 @@ TEST(LoadOptions, TheCommonestCaseNeedsNoFile) {
     EXPECT_EQ(scenario.duration, load::Seconds(12.5));
     ASSERT_EQ(scenario.groups.size(), 1U);
     EXPECT_EQ(scenario.groups[0].count, 20U);
-    EXPECT_EQ(scenario.groups[0].wish.rows, 3U);
-    EXPECT_EQ(scenario.groups[0].wish.cols, 2U);
+    EXPECT_EQ(scenario.groups[0].request.rows, 3U);
+    EXPECT_EQ(scenario.groups[0].request.cols, 2U);
     EXPECT_EQ(scenario.groups[0].decoding, wire::Decoding::kChecksum);
 }
 
@@ -51,7 +51,7 @@ TEST(LoadOptions, NamesTheFlagThatIsWrong) {
     EXPECT_EQ(read({"--clients", "0"}).exit_code, 2);
     EXPECT_THAT(read({"--clients", "0"}).text, HasSubstr("--clients 0: write a number from 1 to"));
     EXPECT_THAT(read({"--grid", "9x9"}).text, HasSubstr("--grid 9x9: "));
-    EXPECT_THAT(read({"--mode", "mesh"}).text, HasSubstr("--mode mesh: write one of views, scene, warp"));
+    EXPECT_THAT(read({"--mode", "mesh"}).text, HasSubstr("--mode mesh: write views, scene or warp"));
     EXPECT_THAT(read({"--duration", "soon"}).text, HasSubstr("--duration soon: write a number"));
     EXPECT_THAT(read({"--require", "due_p98_ms=3"}).text, HasSubstr("--require due_p98_ms=3: no such threshold"));
     EXPECT_THAT(read({"--require", "due_p99_ms"}).text, HasSubstr("write a number"));

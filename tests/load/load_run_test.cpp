@@ -36,8 +36,8 @@ Group group_of(const std::string& name, std::uint32_t count) {
     Group group;
     group.name = name;
     group.count = count;
-    group.wish.rows = 1;
-    group.wish.cols = 2;
+    group.request.rows = 1;
+    group.request.cols = 2;
     group.due_fps = 20.0;
     return group;
 }

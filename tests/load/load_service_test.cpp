@@ -15,9 +15,9 @@ Group group_of(const std::string& name, std::uint32_t count, std::uint32_t rows,
     Group group;
     group.name = name;
     group.count = count;
-    group.wish.rows = rows;
-    group.wish.cols = cols;
-    group.wish.max_frames_per_second = 5.0F;
+    group.request.rows = rows;
+    group.request.cols = cols;
+    group.request.max_frames_per_second = 5.0F;
     group.due_fps = 5.0;
     return group;
 }
@@ -49,7 +49,7 @@ TEST_F(LoadService, MixedClientsAllGetTheirFramesUndamaged) {
     std::vector<Group> groups{group_of("thin", 10, 3, 3), group_of("decoding", 4, 1, 2), group_of("planes", 6, 4, 4),
                               group_of("headers", 4, 6, 6)};
     groups[1].decoding = wire::Decoding::kFull;
-    groups[2].wish.mode = net::Mode::kScene;
+    groups[2].request.mode = DeliveryMode::kScene;
     groups[3].decoding = wire::Decoding::kHeaders;
     const LoadResult result = run(groups, test::frames_for_everybody(15));
     for (const GroupResult& group : result.groups) {

@@ -45,10 +45,10 @@ TEST_F(ReplayService, ManyClientsComeAndGo) {
         Group& group = scenario.groups.emplace_back();
         group.name = name;
         group.count = 4;
-        group.wish.rows = group.wish.cols = 3;
+        group.request.rows = group.request.cols = 3;
         group.due_fps = 5.0;
     }
-    scenario.groups[1].wish.mode = net::Mode::kScene;
+    scenario.groups[1].request.mode = DeliveryMode::kScene;
     scenario.groups[2].decoding = wire::Decoding::kFull;
     scenario.groups[3].stay = 400ms;
     scenario.groups[3].away = 100ms;

@@ -89,11 +89,11 @@ planes = "illumination"
     const Group& phones = scenario.groups[0];
     EXPECT_EQ(phones.name, "phones");
     EXPECT_EQ(phones.count, 12U);
-    EXPECT_EQ(phones.wish.rows, 2U);
-    EXPECT_EQ(phones.wish.cols, 3U);
-    EXPECT_EQ(phones.wish.width_px, 160U);
-    EXPECT_EQ(phones.wish.height_px, 90U);
-    EXPECT_EQ(phones.wish.max_frames_per_second, 15.0F);
+    EXPECT_EQ(phones.request.rows, 2U);
+    EXPECT_EQ(phones.request.cols, 3U);
+    EXPECT_EQ(phones.request.width_px, 160U);
+    EXPECT_EQ(phones.request.height_px, 90U);
+    EXPECT_EQ(phones.request.max_frames_per_second, 15.0F);
     EXPECT_EQ(phones.due_fps, 10.0);
     EXPECT_EQ(phones.decoding, wire::Decoding::kFull);
     EXPECT_EQ(phones.max_bytes_per_second, 100'000.0);
@@ -106,8 +106,8 @@ planes = "illumination"
     EXPECT_EQ(std::get<LatencyLimit>(phones.thresholds[1].of).share, 1.0);
     EXPECT_EQ(phones.thresholds[1].limit, 3000.0);
     EXPECT_EQ(scenario.groups[1].name, "group 2");
-    EXPECT_EQ(scenario.groups[1].wish.mode, net::Mode::kScene);
-    EXPECT_EQ(scenario.groups[1].wish.planes, net::PlaneWish::kIllumination);
+    EXPECT_EQ(scenario.groups[1].request.mode, DeliveryMode::kScene);
+    EXPECT_EQ(scenario.groups[1].request.planes, PlaneSet::kIllumination);
     EXPECT_EQ(client_count(scenario), 13U);
 }
 
@@ -133,7 +133,7 @@ TEST_F(ScenarioTest, RefusesValuesThatMakeNoSense) {
         EXPECT_THAT(in_group("due-fps = " + std::string(rate)), HasSubstr(at(2, "due-fps: write 0, or a number from")));
     }
     EXPECT_THAT(in_group("stay = -1"), HasSubstr(at(2, "stay: write a number")));
-    EXPECT_THAT(in_group("mode = \"mesh\""), HasSubstr(at(2, "mode: write one of views, scene, warp")));
+    EXPECT_THAT(in_group("mode = \"mesh\""), HasSubstr(at(2, "mode: write views, scene or warp")));
     EXPECT_THAT(in_group("reads-kbit-per-second = 0"), HasSubstr(at(2, "reads-kbit-per-second: write a number")));
 }
 

@@ -12,13 +12,13 @@ constexpr LatticeGeometry kGeometry{{0.06F, 0.06F}};
 class GridKeepingTest : public RenderTest {
 protected:
     /// Views average their light, and holes are filled from the frame before where the settings have that.
-    static FrameHeader header_of(std::uint32_t frame, Route route) {
+    static FrameHeader header_of(std::uint32_t frame, DenoisedImages images) {
         FrameHeader header = plain_header(room_camera(kWidth, kHeight), 1);
         header.cut = frame == 0;
         header.noise_frame = frame;
         header.settings.accumulate_views = true;
-        header.settings.route = route;
-        header.settings.denoiser = route == Route::kRed ? Denoiser::kSvgf : Denoiser::kNone;
+        header.settings.denoised_images = images;
+        header.settings.denoiser = images == DenoisedImages::kViews ? Denoiser::kSvgf : Denoiser::kNone;
         header.settings.temporal_accumulation = true;
         return header;
     }
@@ -42,11 +42,11 @@ protected:
 };
 
 TEST_F(GridKeepingTest, ViewsThatPauseBeginAnew) {
-    for (const Route route : {Route::kGreen, Route::kRed}) {
+    for (const DenoisedImages images : {DenoisedImages::kSource, DenoisedImages::kViews}) {
         Stage paused = stage(area_lit_room());
         Stage fresh = stage(area_lit_room());
         for (std::uint32_t frame = 0; frame < 6; ++frame) {
-            const FrameHeader header = header_of(frame, route);
+            const FrameHeader header = header_of(frame, images);
             if (frame < 3) {
                 render(paused, header);
             } else {
@@ -54,15 +54,15 @@ TEST_F(GridKeepingTest, ViewsThatPauseBeginAnew) {
             }
             render_source(fresh, header);
         }
-        const FrameHeader resumed = header_of(6, route);
+        const FrameHeader resumed = header_of(6, images);
         EXPECT_EQ(render(paused, resumed), render(fresh, resumed)) << "nothing is left of what was shown before";
     }
 }
 
 TEST_F(GridKeepingTest, WhatIsForgottenIsMadeAgain) {
-    for (const Route route : {Route::kGreen, Route::kRed}) {
+    for (const DenoisedImages images : {DenoisedImages::kSource, DenoisedImages::kViews}) {
         Stage s = stage(area_lit_room());
-        const FrameHeader header = header_of(0, route);
+        const FrameHeader header = header_of(0, images);
         const ViewRequest request = grid_of(header);
         EXPECT_GT(s.grid.missing_bytes(header.settings, request), 0U);
         const auto before = render(s, header);
@@ -78,7 +78,7 @@ TEST_F(GridKeepingTest, WhatIsWantedKeepsItsHistory) {
     Stage s = stage(area_lit_room());
     Stage undisturbed = stage(area_lit_room());
     for (std::uint32_t frame = 0; frame < 4; ++frame) {
-        const FrameHeader header = header_of(frame, Route::kGreen);
+        const FrameHeader header = header_of(frame, DenoisedImages::kSource);
         const ViewRequest kept = grid_of(header);
         s.grid.forget_all_but(std::span(&kept, 1));
         EXPECT_EQ(render(s, header), render(undisturbed, header)) << frame;

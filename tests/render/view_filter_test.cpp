@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views that average and denoise their own light: accumulate_views and the red route.
+// Views that average and denoise their own light: accumulate_views and DenoisedImages::kViews.
 #include "core/base/error.h"
 #include "core/render/view_filter.h"
 #include "tests/render/render_test.h"
@@ -26,7 +26,7 @@ protected:
 
     static FrameHeader red_header(std::uint32_t frame, Denoiser denoiser) {
         FrameHeader header = header_of(frame);
-        header.settings.route = Route::kRed;
+        header.settings.denoised_images = DenoisedImages::kViews;
         header.settings.denoiser = denoiser;
         header.settings.temporal_accumulation = true;
         return header;
@@ -145,7 +145,7 @@ TEST_F(ViewFilterTest, FlatLightIsTheSameByBothRoutes) {
         FrameHeader header = red_header(frame, Denoiser::kSvgfPlus);
         header.source = look_at({0.2F, 0.4F, 2}, {-0.4F, 0, 0}, 0.6F, kWidth, kHeight);
         render(red, header);
-        header.settings.route = Route::kGreen;
+        header.settings.denoised_images = DenoisedImages::kSource;
         render(green, header);
     }
     EXPECT_LT(error_of(red.grid, green.grid), 0.01); // R11G11B10F of light that is not quite 1: 2^-7
@@ -164,7 +164,7 @@ TEST_F(ViewFilterTest, RedRouteHasTheGreensMeanAndLessNoiseInHoles) {
         for (std::uint32_t frame = 0; frame < 6; ++frame) {
             FrameHeader header = red_header(frame, denoiser);
             render(red, header);
-            header.settings.route = Route::kGreen;
+            header.settings.denoised_images = DenoisedImages::kSource;
             render(green, header);
         }
         EXPECT_LT(error_of(red.grid, converged.grid), 0.5 * error_of(noisy.grid, converged.grid));
@@ -219,7 +219,7 @@ TEST_F(ViewFilterTest, AveragesOfStillFramesAreTheSameByBothRoutes) {
         FrameHeader header = red_header(frame, Denoiser::kSvgf);
         header.settings.accumulate = true;
         const Views by_red = render(red, header);
-        header.settings.route = Route::kGreen;
+        header.settings.denoised_images = DenoisedImages::kSource;
         const Views by_green = render(green, header);
         const bool is_same = by_red.views[3].image == by_green.views[3].image;
         EXPECT_EQ(is_same, frame > 0) << frame; // the first does not know that nothing moves
@@ -262,7 +262,7 @@ TEST_F(ViewFilterTest, LightOfLayersIsDenoisedInTheSource) {
         header.source = look_at({0, 0, 3}, {0, 0, 0}, 0.6F, kWidth - 1, kHeight - 1);
         s.gpu_scene.pose(0, header.cut);
         const SourceFrame red = s.source.render(header).download(wanted);
-        header.settings.route = Route::kGreen;
+        header.settings.denoised_images = DenoisedImages::kSource;
         const SourceFrame green = other.render(header).download(wanted);
         ASSERT_EQ(red.header.layer_count, kMaxLayers);
         const std::vector<std::byte>& ours = red.planes.front().bytes;

@@ -55,16 +55,16 @@ void add_extension(X509* certificate, X509* issuer, int nid, const std::string& 
 }
 
 /// Version, serial number, times, subject and key; neither issuer nor signature.
-X509* unsigned_certificate(const CertificateWish& wish, EVP_PKEY* key) {
+X509* unsigned_certificate(const CertificateOptions& options, EVP_PKEY* key) {
     X509* const certificate = X509_new();
     X509_set_version(certificate, 2); // which means version 3
     std::uint32_t serial = 0;
     RAND_bytes(reinterpret_cast<unsigned char*>(&serial), sizeof serial);
     ASN1_INTEGER_set(X509_get_serialNumber(certificate), static_cast<long>(serial >> 1U) + 1);
-    X509_gmtime_adj(X509_getm_notBefore(certificate), static_cast<long>(wish.begins.count()));
-    X509_gmtime_adj(X509_getm_notAfter(certificate), static_cast<long>(wish.ends.count()));
+    X509_gmtime_adj(X509_getm_notBefore(certificate), static_cast<long>(options.begins.count()));
+    X509_gmtime_adj(X509_getm_notAfter(certificate), static_cast<long>(options.ends.count()));
     X509_NAME* const name = X509_get_subject_name(certificate);
-    X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_UTF8, reinterpret_cast<const unsigned char*>(wish.subject.c_str()),
+    X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_UTF8, reinterpret_cast<const unsigned char*>(options.subject.c_str()),
                                -1, -1, 0);
     X509_set_pubkey(certificate, key);
     return certificate;
@@ -89,12 +89,12 @@ std::string CertificateAuthority::certificate() const {
     return pem_of(pair_->certificate);
 }
 
-Issued CertificateAuthority::issue(const CertificateWish& wish) const {
+Issued CertificateAuthority::issue(const CertificateOptions& options) const {
     Pair issued;
     issued.key = EVP_EC_gen("P-256");
-    issued.certificate = unsigned_certificate(wish, issued.key);
+    issued.certificate = unsigned_certificate(options, issued.key);
     X509_set_issuer_name(issued.certificate, X509_get_subject_name(pair_->certificate));
-    add_extension(issued.certificate, pair_->certificate, NID_subject_alt_name, wish.names);
+    add_extension(issued.certificate, pair_->certificate, NID_subject_alt_name, options.names);
     X509_sign(issued.certificate, pair_->key, EVP_sha256());
     return {.certificate = pem_of(issued.certificate), .key = pem_of(issued.key)};
 }

@@ -13,7 +13,7 @@ struct Issued {
     std::string key;
 };
 
-struct CertificateWish {
+struct CertificateOptions {
     std::string subject = "localhost";
     std::string names = "DNS:localhost,IP:127.0.0.1"; ///< subjectAltName as OpenSSL writes it
     std::chrono::seconds begins{-60};                 ///< from now
@@ -29,7 +29,7 @@ public:
     CertificateAuthority& operator=(const CertificateAuthority&) = delete;
 
     std::string certificate() const; ///< PEM
-    Issued issue(const CertificateWish& wish = {}) const;
+    Issued issue(const CertificateOptions& options = {}) const;
 
 private:
     struct Pair;

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr auto kPatience = 240s; // two cores, busy, software Vulkan, cold pipeline cache
 
 /// Frames that a change may cost: one being rendered, one being encoded, one waiting and one being sent for the old
-/// wish.
+/// request.
 constexpr int kFramesPerChange = 4;
 
 class Changes : public testing::Test {
@@ -94,7 +94,7 @@ TEST_F(Changes, PicturesAreThoseOfAFreshClientAndNothingIsLostBesides) {
     const auto& epochs = json["epochs"];
     ASSERT_EQ(epochs.size(), 3U) << json.dump(2);
     EXPECT_EQ(epochs[1]["grid"], "5x5");
-    EXPECT_EQ(epochs[2]["mode"], "scene, with G-buffer");
+    EXPECT_EQ(epochs[2]["mode"], "scene, g-buffer");
     const double dropped =
         server_.metric("fieldcast_frames_dropped_total{channel=\"atelier\",reason=\"reconfigured\"}");
     EXPECT_GE(dropped, 0.0) << server_.metrics();

@@ -71,9 +71,9 @@ TEST_F(SessionTest, EndsWhenALossyCodecIsGrantedThatWasNotAskedFor) {
 }
 
 TEST_F(SessionTest, EndsWhenGrantedFramesAreTooLarge) {
-    Wish wish = small_wish();
-    wish.rows = 8;
-    wish.cols = 9;
+    Request request = small_request();
+    request.rows = 8;
+    request.cols = 9;
     open(
         [](FakeCall& call, int) {
             auto configure = call.read_until(v1::ClientMessage::kConfigure);
@@ -82,7 +82,7 @@ TEST_F(SessionTest, EndsWhenGrantedFramesAreTooLarge) {
             call.send(configured_message(configure->configure()));
             call.read_rest();
         },
-        wish);
+        request);
     const auto ended = next<Ended>();
     ASSERT_TRUE(ended);
     EXPECT_THAT(ended->error.what(), HasSubstr("at most 1024 MiB"));
@@ -100,7 +100,7 @@ TEST_F(SessionTest, AsksForSomethingElseOnTheRunningStream) {
         call.read_rest();
     });
     ASSERT_TRUE(next<FrameArrived>());
-    Wish wider = small_wish();
+    Request wider = small_request();
     wider.cols = 5;
     session_->configure(wider);
     const auto old = next<FrameArrived>();
@@ -129,7 +129,7 @@ TEST_F(SessionTest, ARefusedChangeLeavesTheAgreementAsItWas) {
         call.read_rest();
     });
     ASSERT_TRUE(next<Agreement>());
-    Wish wider = small_wish();
+    Request wider = small_request();
     wider.cols = 5;
     session_->configure(wider);
     const auto refused = next<Refused>();
@@ -172,9 +172,9 @@ FakeServer::Script adapting_to(std::uint32_t cols) {
 }
 
 TEST_F(SessionTest, FollowsAServerThatAdapts) {
-    Wish wish = small_wish();
-    wish.adaptation = AdaptationWish{.min_rows = 1, .min_cols = 1};
-    open(adapting_to(1), wish);
+    Request request = small_request();
+    request.adaptation = AdaptationBounds{.min_rows = 1, .min_cols = 1};
+    open(adapting_to(1), request);
     ASSERT_TRUE(next<Agreement>());
     const auto adapted = next<Agreement>();
     ASSERT_TRUE(adapted);
@@ -195,9 +195,9 @@ TEST_F(SessionTest, EndsWhenAServerAdaptsUnasked) {
 }
 
 TEST_F(SessionTest, EndsWhenAServerAdaptsBeyondTheBounds) {
-    Wish wish = small_wish();
-    wish.adaptation = AdaptationWish{.min_rows = 1, .min_cols = 1};
-    open(adapting_to(3), wish); // more than was asked for
+    Request request = small_request();
+    request.adaptation = AdaptationBounds{.min_rows = 1, .min_cols = 1};
+    open(adapting_to(3), request); // more than was asked for
     const auto ended = next<Ended>();
     ASSERT_TRUE(ended);
     EXPECT_THAT(ended->error.what(), HasSubstr("another grid"));
@@ -217,9 +217,9 @@ wire::ReceivedFrame light_frame(std::uint32_t height_px) {
 }
 
 TEST(FrameProblem, PlanesAreThoseThatWereAnnounced) {
-    Wish wish = small_wish();
-    wish.mode = Mode::kScene;
-    v1::Configured configured = configured_message(to_configure(wish, 1)).configured();
+    Request request = small_request();
+    request.mode = DeliveryMode::kScene;
+    v1::Configured configured = configured_message(to_configure(request, 1)).configured();
     for (const v1::PlaneSemantic semantic : {v1::PLANE_SEMANTIC_DIFFUSE, v1::PLANE_SEMANTIC_SPECULAR}) {
         v1::PlaneHeader& plane = *configured.add_planes();
         plane.set_semantic(semantic);
@@ -228,13 +228,13 @@ TEST(FrameProblem, PlanesAreThoseThatWereAnnounced) {
         plane.set_width_px(64);
         plane.set_height_px(108);
     }
-    const auto agreement = from_configured(configured, wish);
+    const auto agreement = from_configured(configured, request);
     ASSERT_TRUE(agreement) << agreement.error().message;
     EXPECT_EQ(agreement->limits.max_frame_bytes, 2U * 4U * 64U * 108U) << "what was announced, and no more";
     EXPECT_EQ(frame_problem(light_frame(108), *agreement), std::nullopt);
     EXPECT_THAT(frame_problem(light_frame(109), *agreement).value_or(""), HasSubstr("larger planes"));
     configured.mutable_planes()->SwapElements(0, 1);
-    EXPECT_THAT(frame_problem(light_frame(108), *from_configured(configured, wish)).value_or(""), HasSubstr("other"));
+    EXPECT_THAT(frame_problem(light_frame(108), *from_configured(configured, request)).value_or(""), HasSubstr("other"));
 }
 
 } // namespace

@@ -21,12 +21,12 @@ TEST(Options, ReadTheCommandOfTheReadme) {
     ASSERT_TRUE(invocation.options) << invocation.text;
     const client::play::PlayOptions& play = invocation.options->play;
     EXPECT_EQ(play.server.address, "127.0.0.1:9");
-    EXPECT_EQ(play.wish.rows, 4U);
-    EXPECT_EQ(play.wish.cols, 5U);
-    EXPECT_EQ(play.wish.width_px, 640U);
-    EXPECT_EQ(play.wish.height_px, 360U);
-    EXPECT_EQ(play.wish.mode, client::net::Mode::kScene);
-    EXPECT_EQ(play.wish.planes, client::net::PlaneWish::kIllumination);
+    EXPECT_EQ(play.request.rows, 4U);
+    EXPECT_EQ(play.request.cols, 5U);
+    EXPECT_EQ(play.request.width_px, 640U);
+    EXPECT_EQ(play.request.height_px, 360U);
+    EXPECT_EQ(play.request.mode, DeliveryMode::kScene);
+    EXPECT_EQ(play.request.planes, PlaneSet::kIllumination);
     EXPECT_EQ(play.frames, 3U);
     EXPECT_TRUE(play.products.source_exr);
     EXPECT_FALSE(play.products.views);
@@ -70,11 +70,11 @@ TEST(Options, ASecondModeIsTheFallBack) {
 TEST(Options, WarpNeedsNoSceneAndHasAResidualLayerUnlessToldOtherwise) {
     const Invocation invocation = read({"--mode", "warp,views", "--codec", "jpeg,zstd"});
     ASSERT_TRUE(invocation.options) << invocation.text;
-    EXPECT_EQ(invocation.options->play.wish.mode, client::net::Mode::kWarp);
-    EXPECT_TRUE(invocation.options->play.wish.has_residual);
+    EXPECT_EQ(invocation.options->play.request.mode, DeliveryMode::kWarp);
+    EXPECT_TRUE(invocation.options->play.request.has_residual);
     EXPECT_TRUE(invocation.options->falls_back_to_views);
     EXPECT_TRUE(invocation.options->play.cache_folder.empty());
-    EXPECT_FALSE(read({"--mode", "warp", "--no-residual"}).options->play.wish.has_residual);
+    EXPECT_FALSE(read({"--mode", "warp", "--no-residual"}).options->play.request.has_residual);
     EXPECT_EQ(read({"--mode", "warp", "--write", "exr"}).exit_code, 2);
 }
 
@@ -82,38 +82,38 @@ TEST(Options, IlluminationMayBeOnePlane) {
     const Invocation invocation =
         read({"--mode", "scene", "--planes", "total-light", "--change", "3s:planes=g-buffer"});
     ASSERT_TRUE(invocation.options) << invocation.text;
-    EXPECT_EQ(invocation.options->play.wish.planes, client::net::PlaneWish::kTotalLight);
-    EXPECT_EQ(invocation.options->play.changes.at(0).wish.planes, client::net::PlaneWish::kWithGBuffer);
+    EXPECT_EQ(invocation.options->play.request.planes, PlaneSet::kTotalLight);
+    EXPECT_EQ(invocation.options->play.changes.at(0).request.planes, PlaneSet::kWithGBuffer);
     const Invocation wrong = read({"--change", "3s:planes=light"});
     EXPECT_EQ(wrong.exit_code, 2);
-    EXPECT_THAT(wrong.text, HasSubstr("expected g-buffer, illumination or total-light"));
+    EXPECT_THAT(wrong.text, HasSubstr("write illumination, g-buffer or total-light"));
 }
 
 TEST(Options, NormalsHave16Or8BitsAComponent) {
-    EXPECT_FALSE(read({"--mode", "scene"}).options->play.wish.has_coarse_normals);
-    EXPECT_TRUE(read({"--mode", "scene", "--normal-bits", "8"}).options->play.wish.has_coarse_normals);
+    EXPECT_FALSE(read({"--mode", "scene"}).options->play.request.has_coarse_normals);
+    EXPECT_TRUE(read({"--mode", "scene", "--normal-bits", "8"}).options->play.request.has_coarse_normals);
     EXPECT_EQ(read({"--mode", "scene", "--normal-bits", "12"}).exit_code, 2);
 }
 
 TEST(Options, UnsetValuesAreLeftToTheChannel) {
     const Invocation invocation = read({});
     ASSERT_TRUE(invocation.options);
-    const client::net::Wish& wish = invocation.options->play.wish;
-    EXPECT_EQ(wish.width_px, 0U);
-    EXPECT_FALSE(wish.spacing_m);
-    EXPECT_FALSE(wish.convergence_m);
-    EXPECT_EQ(wish.fovy_rad, 0.0F);
+    const client::net::Request& request = invocation.options->play.request;
+    EXPECT_EQ(request.width_px, 0U);
+    EXPECT_FALSE(request.spacing_m);
+    EXPECT_FALSE(request.convergence_m);
+    EXPECT_EQ(request.fovy_rad, 0.0F);
 }
 
 TEST(Options, CodecsKeepTheirOrder) {
     const Invocation invocation = read({"--codec", "jpeg,zstd", "--quality", "40"});
     ASSERT_TRUE(invocation.options) << invocation.text;
-    EXPECT_THAT(invocation.options->play.wish.codecs,
-                testing::ElementsAre(codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered));
-    EXPECT_EQ(invocation.options->play.wish.quality, 40);
+    EXPECT_THAT(invocation.options->play.request.codecs,
+                testing::ElementsAre(Codec::kJpeg, Codec::kZstdFiltered));
+    EXPECT_EQ(invocation.options->play.request.quality, 40);
     const Invocation video = read({"--codec", "h264,jpeg"});
     ASSERT_TRUE(video.options) << video.text;
-    EXPECT_THAT(video.options->play.wish.codecs, testing::ElementsAre(codec::CodecId::kH264, codec::CodecId::kJpeg));
+    EXPECT_THAT(video.options->play.request.codecs, testing::ElementsAre(Codec::kH264, Codec::kJpeg));
 }
 
 TEST(Options, WrongInputExitsWithTwoAndNamesTheFlag) {
@@ -145,17 +145,17 @@ TEST(Options, ChangesBuildOnEachOther) {
                                         "--change", "20f:mode=scene,size=320x180", "--cache", "c"});
     ASSERT_TRUE(invocation.options) << invocation.text;
     const client::play::PlayOptions& play = invocation.options->play;
-    EXPECT_EQ(play.wish.rows, 3U);
+    EXPECT_EQ(play.request.rows, 3U);
     ASSERT_EQ(play.changes.size(), 2U);
     EXPECT_EQ(play.changes[0].moment.after, std::chrono::milliseconds(3000));
-    EXPECT_EQ(play.changes[0].wish.rows, 5U);
-    EXPECT_EQ(play.changes[0].wish.quality, 40U);
-    EXPECT_THAT(play.changes[0].wish.codecs,
-                testing::ElementsAre(codec::CodecId::kJpeg, codec::CodecId::kZstdFiltered));
+    EXPECT_EQ(play.changes[0].request.rows, 5U);
+    EXPECT_EQ(play.changes[0].request.quality, 40U);
+    EXPECT_THAT(play.changes[0].request.codecs,
+                testing::ElementsAre(Codec::kJpeg, Codec::kZstdFiltered));
     EXPECT_EQ(play.changes[1].moment.frames, 20U);
-    EXPECT_EQ(play.changes[1].wish.mode, client::net::Mode::kScene);
-    EXPECT_EQ(play.changes[1].wish.rows, 5U) << "as the change before left it";
-    EXPECT_EQ(play.changes[1].wish.height_px, 180U);
+    EXPECT_EQ(play.changes[1].request.mode, DeliveryMode::kScene);
+    EXPECT_EQ(play.changes[1].request.rows, 5U) << "as the change before left it";
+    EXPECT_EQ(play.changes[1].request.height_px, 180U);
     EXPECT_EQ(play.cache_folder, "c") << "the change needs the scene";
 }
 
@@ -163,8 +163,8 @@ TEST(Options, ChangesThatCannotBeReadAreNamed) {
     for (const auto& [text, words] :
          {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid 2"),
           std::pair("3s:colour=red", "keys are grid"), std::pair("3s:quality=101", "quality=101"),
-          std::pair("-1s:grid=2x2", "says when"), std::pair("3s:max-fps=0.004", "max-fps=0.004: 0, or frames"),
-          std::pair("3s:max-fps=nan", "max-fps=nan: 0, or frames")}) {
+          std::pair("-1s:grid=2x2", "says when"), std::pair("3s:max-fps=0.004", "max-fps=0.004: write 0, or a number"),
+          std::pair("3s:max-fps=nan", "max-fps=nan: write 0, or a number")}) {
         const Invocation invocation = read({"--change", text});
         EXPECT_FALSE(invocation.options) << text;
         EXPECT_EQ(invocation.exit_code, 2);
@@ -178,24 +178,24 @@ TEST(Options, FilesOfTimingsSayTheirFormByTheirName) {
 }
 
 TEST(Options, AdaptationIsOffUnlessAskedFor) {
-    EXPECT_FALSE(read({}).options->play.wish.adaptation);
+    EXPECT_FALSE(read({}).options->play.request.adaptation);
     const Invocation usual = read({"--adapt", "--frames", "3"});
     ASSERT_TRUE(usual.options) << usual.text;
-    ASSERT_TRUE(usual.options->play.wish.adaptation);
-    EXPECT_TRUE(usual.options->play.wish.adaptation->allows_jpeg);
-    EXPECT_EQ(usual.options->play.wish.adaptation->min_rows, 3U);
+    ASSERT_TRUE(usual.options->play.request.adaptation);
+    EXPECT_TRUE(usual.options->play.request.adaptation->allows_jpeg);
+    EXPECT_EQ(usual.options->play.request.adaptation->min_rows, 3U);
     const Invocation own = read({"--adapt", "jpeg=off,quality=0,fps=5,height=90,grid=2x1,delay=250"});
     ASSERT_TRUE(own.options) << own.text;
-    const client::net::AdaptationWish& wish = *own.options->play.wish.adaptation;
-    EXPECT_FALSE(wish.allows_jpeg);
-    EXPECT_EQ(wish.min_quality, 0U);
-    EXPECT_EQ(wish.min_frames_per_second, 5.0F);
-    EXPECT_EQ(wish.min_view_height_px, 90U);
-    EXPECT_EQ(wish.min_rows, 2U);
-    EXPECT_EQ(wish.min_cols, 1U);
-    EXPECT_EQ(wish.max_queue_delay_ms, 250U);
-    EXPECT_THAT(read({"--adapt", "fps=0.05"}).text, HasSubstr("fps=0.05: 0, or frames"));
-    EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("keys are jpeg"));
+    const client::net::AdaptationBounds& request = *own.options->play.request.adaptation;
+    EXPECT_FALSE(request.allows_jpeg);
+    EXPECT_EQ(request.min_quality, 0U);
+    EXPECT_EQ(request.min_frames_per_second, 5.0F);
+    EXPECT_EQ(request.min_view_height_px, 90U);
+    EXPECT_EQ(request.min_rows, 2U);
+    EXPECT_EQ(request.min_cols, 1U);
+    EXPECT_EQ(request.max_queue_delay_ms, 250U);
+    EXPECT_THAT(read({"--adapt", "fps=0.05"}).text, HasSubstr("fps=0.05: write 0, or a number"));
+    EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("keys are delay"));
 }
 
 } // namespace

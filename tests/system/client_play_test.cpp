@@ -25,11 +25,11 @@ play::ServerOptions server_options(const FakeServer& server, bool reconnects = t
     return {.address = server.address(), .reconnects = reconnects, .patience = 10'000ms};
 }
 
-net::Wish small_wish() {
-    net::Wish wish;
-    wish.rows = 1;
-    wish.cols = 2;
-    return wish;
+net::Request small_request() {
+    net::Request request;
+    request.rows = 1;
+    request.cols = 2;
+    return request;
 }
 
 class PlayTest : public testing::Test {
@@ -37,7 +37,7 @@ protected:
     play::PlayOptions options(const FakeServer& server) const {
         play::PlayOptions options;
         options.server = server_options(server);
-        options.wish = small_wish();
+        options.request = small_request();
         options.out = folder_;
         return options;
     }
@@ -130,7 +130,7 @@ TEST_F(PlayTest, StopRequestKeepsTheLastFrameAndEndsInOrder) {
 TEST_F(PlayTest, SceneWithoutADeviceSaysWhatWorks) {
     const FakeServer server([](FakeCall&, int) {});
     play::PlayOptions wanted = options(server);
-    wanted.wish.mode = net::Mode::kScene;
+    wanted.request.mode = DeliveryMode::kScene;
     wanted.device = "no device is called like this";
     try {
         play::play(
@@ -154,8 +154,8 @@ TEST_F(PlayTest, ChangesOnTheRunningStream) {
     });
     play::PlayOptions wanted = options(server);
     wanted.frames = 3;
-    wanted.changes.push_back({.moment = {.frames = 2}, .wish = wanted.wish});
-    wanted.changes[0].wish.cols = 3;
+    wanted.changes.push_back({.moment = {.frames = 2}, .request = wanted.request});
+    wanted.changes[0].request.cols = 3;
     const play::PlayResult result = play::play(
         wanted, [](const play::Progress&) {}, stop_.get_token());
     EXPECT_FALSE(result.failure);
@@ -173,8 +173,8 @@ TEST_F(PlayTest, ChangesOnTheRunningStream) {
 TEST(ChangeSchedule, GivesEachChangeOnceAndInOrder) {
     using std::chrono_literals::operator""s;
     const play::ChangeSchedule::TimePoint start{};
-    std::vector<play::Change> changes{{.moment = {.after = 3000ms}, .wish = {}}, {.moment = {.frames = 2}, .wish = {}}};
-    changes[1].wish.rows = 9;
+    std::vector<play::Change> changes{{.moment = {.after = 3000ms}, .request = {}}, {.moment = {.frames = 2}, .request = {}}};
+    changes[1].request.rows = 9;
     play::ChangeSchedule schedule(changes);
     EXPECT_FALSE(schedule.due(start + 10s)) << "not before the first agreement";
     schedule.agreed(start);
@@ -196,7 +196,7 @@ TEST(Receiver, ComesBackWhenTheServerGoesAway) {
         }
         call.read_rest(); // the client half-closes first
     });
-    play::Receiver receiver(server_options(server), small_wish(), std::nullopt);
+    play::Receiver receiver(server_options(server), small_request(), std::nullopt);
     const auto first = receiver.take({});
     ASSERT_TRUE(first);
     EXPECT_EQ(first->arrived.frame_id, 1U);
@@ -209,14 +209,14 @@ TEST(Receiver, ComesBackWhenTheServerGoesAway) {
 
 TEST(Receiver, FailsWithoutReconnects) {
     const FakeServer server([](FakeCall& call, int) { send_frames(call, 1, 1); });
-    play::Receiver receiver(server_options(server, false), small_wish(), std::nullopt);
+    play::Receiver receiver(server_options(server, false), small_request(), std::nullopt);
     while (receiver.take({})) {
     }
     ASSERT_TRUE(receiver.failure());
     EXPECT_EQ(receiver.failure()->message, "the server finished");
 }
 
-TEST(Receiver, DoesNotRepeatARefusedWish) {
+TEST(Receiver, DoesNotRepeatARefusedRequest) {
     const FakeServer server([](FakeCall& call, int) {
         call.read_until(v1::ClientMessage::kConfigure);
         v1::ServerMessage message;
@@ -226,7 +226,7 @@ TEST(Receiver, DoesNotRepeatARefusedWish) {
         call.send(message);
         call.read_rest();
     });
-    play::Receiver receiver(server_options(server), small_wish(), std::nullopt);
+    play::Receiver receiver(server_options(server), small_request(), std::nullopt);
     EXPECT_FALSE(receiver.take({}));
     ASSERT_TRUE(receiver.failure());
     EXPECT_TRUE(receiver.failure()->was_refused);
@@ -238,7 +238,7 @@ TEST(Receiver, LeavesAServerThatShowsAnotherScene) {
         call.grant(); // of scene ABAB…
         call.read_rest();
     });
-    play::Receiver receiver(server_options(server), small_wish(), scene::SceneHash{});
+    play::Receiver receiver(server_options(server), small_request(), scene::SceneHash{});
     EXPECT_FALSE(receiver.take({}));
     ASSERT_TRUE(receiver.failure());
     EXPECT_THAT(receiver.failure()->message, HasSubstr("another scene"));
@@ -258,7 +258,7 @@ TEST(Receiver, DropsAFrameWhenANewerOneIsComplete) {
         all_sent.count_down();
         call.read_rest();
     });
-    play::Receiver receiver(server_options(server), small_wish(), std::nullopt);
+    play::Receiver receiver(server_options(server), small_request(), std::nullopt);
     all_sent.wait();
     const auto newest = receiver.take({});
     ASSERT_TRUE(newest);

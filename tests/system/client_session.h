@@ -8,20 +8,20 @@
 
 namespace fieldcast::test {
 
-inline client::net::Wish small_wish() {
-    client::net::Wish wish;
-    wish.rows = 1;
-    wish.cols = 2;
-    return wish;
+inline client::net::Request small_request() {
+    client::net::Request request;
+    request.rows = 1;
+    request.cols = 2;
+    return request;
 }
 
 /// A session with a fake server; every wait has a deadline.
 class SessionTest : public testing::Test {
 protected:
-    void open(FakeServer::Script script, const client::net::Wish& wish = small_wish()) {
+    void open(FakeServer::Script script, const client::net::Request& request = small_request()) {
         server_.emplace(std::move(script));
         connection_.emplace(server_->address());
-        session_.emplace(*connection_, wish, pool_);
+        session_.emplace(*connection_, request, pool_);
     }
 
     /// The next event of that kind; others are skipped.

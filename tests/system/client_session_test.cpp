@@ -67,7 +67,7 @@ TEST_F(SessionTest, TellsWhenSomethingHasComeAndWhenItEnds) {
         ++*told.lock();
         changed.notify_all();
     };
-    session_.emplace(*connection_, small_wish(), pool_, options);
+    session_.emplace(*connection_, small_request(), pool_, options);
     ASSERT_TRUE(wait_for(1));
     const auto arrived = next<FrameArrived>();
     ASSERT_TRUE(arrived);
@@ -92,7 +92,7 @@ TEST_F(SessionTest, ASlowReaderTakesItsTime) {
     constexpr double kBytesPerSecond = 2000.0;
     Session::Options options;
     options.reading = {.on_change = {}, .max_waiting_bytes = 1, .max_bytes_per_second = kBytesPerSecond};
-    session_.emplace(*connection_, small_wish(), pool_, options);
+    session_.emplace(*connection_, small_request(), pool_, options);
     const auto begin = std::chrono::steady_clock::now();
     std::uint64_t bytes = 0;
     for (int i = 0; i < 3; ++i) {
@@ -222,7 +222,7 @@ TEST_F(SessionTest, MapsServerTimesOntoItsOwnClock) {
 TEST_F(SessionTest, ReportsAServerThatIsNotThere) {
     const ClosedPort nobody;
     connection_.emplace(nobody.address());
-    session_.emplace(*connection_, small_wish(), pool_);
+    session_.emplace(*connection_, small_request(), pool_);
     const auto ended = next<Ended>();
     ASSERT_TRUE(ended);
     EXPECT_TRUE(ended->error.is_transient());

@@ -108,7 +108,7 @@ protected:
     play::PlayOptions options(const FakeServer& server, const std::string& path) const {
         play::PlayOptions options;
         options.server = {.address = server.address(), .reconnects = false, .patience = 10'000ms};
-        options.wish.rows = options.wish.cols = 1;
+        options.request.rows = options.request.cols = 1;
         options.save = play::Save::kNone;
         options.steering = {.poses = play::read_camera_path(path), .waits = false};
         return options;

@@ -19,7 +19,8 @@ fieldcast_test(client_play_test LABELS quick
             ${CMAKE_CURRENT_LIST_DIR}/client_steering_test.cpp
     DEPENDS client_fake_server fieldcast_client_play)
 fieldcast_test(client_options_test LABELS quick
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/options.cpp
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/client_options_test.cpp ${PROJECT_SOURCE_DIR}/client/flag_report.cpp
+            ${PROJECT_SOURCE_DIR}/client/options.cpp
             ${PROJECT_SOURCE_DIR}/client/setting_text.cpp
     DEPENDS fieldcast_client_play CLI11::CLI11)
 

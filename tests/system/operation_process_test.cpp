@@ -68,8 +68,8 @@ TEST_F(Operation, MetricsTellWhatWasRenderedAndSent) {
           "fieldcast_render_seconds_count{channel=\"atelier\"}", "fieldcast_encode_seconds_count{channel=\"atelier\"}",
           "fieldcast_frames_rendered_total{channel=\"atelier\"}", "fieldcast_view_pixels_total{channel=\"atelier\"}",
           "fieldcast_hole_pixels_total{channel=\"atelier\",reason=\"id\"}",
-          "fieldcast_plane_bytes_total{channel=\"atelier\",plane=\"colour\",codec=\"zstd_filtered\"}",
-          "fieldcast_plane_bytes_total{channel=\"atelier\",plane=\"diffuse\",codec=\"zstd_filtered\"}",
+          "fieldcast_plane_bytes_total{channel=\"atelier\",plane=\"colour\",codec=\"zstd\"}",
+          "fieldcast_plane_bytes_total{channel=\"atelier\",plane=\"diffuse\",codec=\"zstd\"}",
           "fieldcast_sent_bytes_total{channel=\"atelier\"}", "process_resident_memory_bytes"}) {
         EXPECT_GT(server_.metric(series), 0.0) << series << " in\n" << page;
     }

@@ -312,9 +312,9 @@ TEST_F(AdaptationTest, TheLadderGoesFromTheLeastPainfulOn) {
         const std::vector<std::shared_ptr<feed::Feed>> channels{feed_};
         EXPECT_TRUE(negotiate(made.configure(rung), channels, Limits{})) << "every rung is a Configure that is granted";
     }
-    EXPECT_EQ(changes, "as asked for; JPEG of quality 75; quality 55; quality 40; 1/2 of the frames; "
+    EXPECT_EQ(changes, "as asked for; jpeg of quality 75; quality 55; quality 40; 1/2 of the frames; "
                        "1/4 of the frames; views of 43x24; views of 32x18; 5x5 views; 4x4 views; 3x3 views; ")
-        << "two planes of 64x36 are more than nine views of 32x18, so that mode SCENE would not help";
+        << "two planes of 64x36 are more than nine views of 32x18, so that mode scene would not help";
 }
 
 TEST_F(AdaptationTest, BoundsHold) {
@@ -386,7 +386,7 @@ TEST_F(AdaptationTest, AWarpSessionOnANarrowConnectionGetsFewerBytes) {
     frame(20ms);
     std::uint64_t jpeg_bytes = 0;
     for (const auto& [choice, bytes] : session_.counts().plane_bytes) {
-        jpeg_bytes += choice.encoding.codec == codec::CodecId::kJpeg ? bytes : 0;
+        jpeg_bytes += choice.encoding.codec == Codec::kJpeg ? bytes : 0;
     }
     EXPECT_GT(before, 0U);
     EXPECT_GT(jpeg_bytes, 0U) << "colour really comes as JPEG";
@@ -423,7 +423,7 @@ TEST_F(AdaptationTest, WhoDoesNotAllowItKeepsWhatWasGranted) {
     EXPECT_EQ(session_.epoch(), 1U);
 }
 
-TEST_F(AdaptationTest, AnotherWishStartsAtItsOwnTop) {
+TEST_F(AdaptationTest, AnotherRequestStartsAtItsOwnTop) {
     configure(adaptive());
     until_change(20ms, 30);
     ASSERT_TRUE(until_change(400ms, 12));

@@ -103,7 +103,7 @@ feed::Demand demand_of_all_qualities(v1::DeliveryMode mode, v1::PlaneSemantic se
     const auto feed = std::make_shared<feed::Feed>(info);
     const TimePoint now{1h};
     std::vector<std::unique_ptr<Session>> sessions;
-    for (std::uint32_t quality = 1; quality <= codec::kMaxQuality; ++quality) {
+    for (std::uint32_t quality = 1; quality <= kMaxQuality; ++quality) {
         v1::ClientMessage message;
         v1::Configure& wanted = *message.mutable_configure();
         wanted.add_modes(mode);

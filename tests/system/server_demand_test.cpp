@@ -18,10 +18,10 @@ using std::chrono::milliseconds;
 
 constexpr TimePoint kStart{1h};
 
-/// Of a width that no wish for another number of views has, so that none are shared.
-feed::Wish views_wish(const Feed& feed, std::uint32_t rows) {
+/// Of a width that no selection for another number of views has, so that none are shared.
+feed::Selection views_selection(const Feed& feed, std::uint32_t rows) {
     const feed::ChannelInfo& info = feed.info();
-    return feed::ViewsWish{.format = {.geometry = info.largest_grid.geometry,
+    return feed::ViewSelection{.format = {.geometry = info.largest_grid.geometry,
                                       .fovy_rad = info.fovy_rad,
                                       .width_px = 64 - rows,
                                       .height_px = 36},
@@ -62,10 +62,10 @@ TEST(PaceTest, WhatWasMissedIsNotMadeUp) {
     EXPECT_FALSE(pace.is_due(kStart + 10s + 50ms));
 }
 
-TEST(DemandTest, AWishWithoutRoomDoesNotCount) {
+TEST(DemandTest, ASelectionWithoutRoomDoesNotCount) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
-    const auto small = Feed::subscribe(feed, views_wish(*feed, 2), ignore);
-    auto large = Feed::subscribe(feed, views_wish(*feed, 6), ignore);
+    const auto small = Feed::subscribe(feed, views_selection(*feed, 2), ignore);
+    auto large = Feed::subscribe(feed, views_selection(*feed, 6), ignore);
     EXPECT_EQ(views_in(feed->demand(kStart)), 8U);
     large->set_room({.taken_until = kStart});
     const feed::Demand later = feed->demand(kStart + 1s);
@@ -75,9 +75,9 @@ TEST(DemandTest, AWishWithoutRoomDoesNotCount) {
     EXPECT_EQ(views_in(feed->demand(kStart + 1s)), 8U) << "at once";
 }
 
-TEST(DemandTest, AWishCountsAgainWhenRoomIsExpected) {
+TEST(DemandTest, ASelectionCountsAgainWhenRoomIsExpected) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
-    auto subscription = Feed::subscribe(feed, views_wish(*feed, 2), ignore);
+    auto subscription = Feed::subscribe(feed, views_selection(*feed, 2), ignore);
     subscription->set_room({.taken_until = kStart + 10s});
     EXPECT_TRUE(feed->demand(kStart).empty());
     EXPECT_FALSE(feed->demand(kStart).is_awaited) << "10 s are longer than the averages of the source need";
@@ -87,10 +87,10 @@ TEST(DemandTest, AWishCountsAgainWhenRoomIsExpected) {
     EXPECT_FALSE(feed->demand(kStart + 11s).is_awaited);
 }
 
-TEST(DemandTest, ACappedWishCountsAtItsPace) {
+TEST(DemandTest, ACappedSelectionCountsAtItsPace) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
-    const auto free = Feed::subscribe(feed, views_wish(*feed, 2), ignore);
-    const auto capped = Feed::subscribe(feed, views_wish(*feed, 6), ignore, Pace(1s));
+    const auto free = Feed::subscribe(feed, views_selection(*feed, 2), ignore);
+    const auto capped = Feed::subscribe(feed, views_selection(*feed, 6), ignore, Pace(1s));
     int counted = 0;
     for (int i = 0; i < 1000; ++i) { // ten seconds
         const std::size_t views = views_in(feed->demand(kStart + i * 10ms));
@@ -102,7 +102,7 @@ TEST(DemandTest, ACappedWishCountsAtItsPace) {
 
 TEST(DemandTest, TheChannelSleepsWhileNobodyHasRoom) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
-    auto subscription = Feed::subscribe(feed, views_wish(*feed, 2), ignore);
+    auto subscription = Feed::subscribe(feed, views_selection(*feed, 2), ignore);
     subscription->set_room({.taken_until = std::chrono::steady_clock::now() - 1h});
     std::atomic<int> has_demand = -1;
     std::jthread channel([&](const std::stop_token& stop) { has_demand = feed->wait_for_demand(stop) ? 1 : 0; });
@@ -118,12 +118,12 @@ TEST(DemandTest, TheChannelSleepsWhileNobodyHasRoom) {
 TEST(DemandTest, WhoHasNoRoomOrIsNotDueWaitsForNothing) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
     const auto now = std::chrono::steady_clock::now();
-    auto subscription = Feed::subscribe(feed, views_wish(*feed, 2), ignore);
+    auto subscription = Feed::subscribe(feed, views_selection(*feed, 2), ignore);
     EXPECT_GE(feed->waiting_time(now + 1h), 59min);
     subscription->set_room({.taken_until = now});
     EXPECT_EQ(feed->waiting_time(now + 1h), 0ns);
     subscription->set_room({});
-    EXPECT_FALSE(subscription->change(views_wish(*feed, 2), Pace(2h)).has_value());
+    EXPECT_FALSE(subscription->change(views_selection(*feed, 2), Pace(2h)).has_value());
     EXPECT_FALSE(feed->demand(now).empty());
     EXPECT_EQ(feed->waiting_time(now + 1h), 0ns) << "the next frame is due in two hours";
     EXPECT_GE(feed->waiting_time(now + 3h), 59min);
@@ -154,7 +154,7 @@ public:
         configure.mutable_configure()->mutable_grid()->set_cols(1);
         session_.on_message(configure, now_);
         feed::Demand demand;
-        feed::add(demand, session_.configuration()->wish);
+        feed::add(demand, session_.configuration()->selection);
         WorkerPool pool(1);
         frame_ = test::synthetic_frame(feed_->info(), demand, 1, pool, 1);
         const auto end = now_ + duration;

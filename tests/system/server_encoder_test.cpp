@@ -112,7 +112,7 @@ TEST_F(Encoder, NestedGridsAreRenderedAndEncodedOnce) {
     feed::Demand demand;
     for (const std::uint32_t side : {3U, 6U}) {
         const ViewGrid grid{.rows = side, .cols = side, .geometry = {}, .anchor = Anchor::kLattice};
-        add(demand, feed::ViewsWish{.format = format_, .grid = grid});
+        add(demand, feed::ViewSelection{.format = format_, .grid = grid});
     }
     RenderedFrame frame;
     frame.header.frame_id = 1;
@@ -135,7 +135,7 @@ TEST_F(Encoder, NestedGridsAreRenderedAndEncodedOnce) {
     }
     for (const std::uint32_t side : {3U, 6U}) {
         const ViewGrid grid{.rows = side, .cols = side, .geometry = {}, .anchor = Anchor::kLattice};
-        EXPECT_TRUE(feed::covers(*encoded, feed::ViewsWish{.format = format_, .grid = grid})) << side;
+        EXPECT_TRUE(feed::covers(*encoded, feed::ViewSelection{.format = format_, .grid = grid})) << side;
     }
 }
 

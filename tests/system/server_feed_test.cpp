@@ -14,20 +14,20 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Wish views_wish(const Feed& feed, std::uint32_t rows, std::uint32_t cols) {
+Selection views_selection(const Feed& feed, std::uint32_t rows, std::uint32_t cols) {
     const ChannelInfo& info = feed.info();
-    return ViewsWish{
+    return ViewSelection{
         .format = {.geometry = info.largest_grid.geometry, .fovy_rad = info.fovy_rad, .width_px = 64, .height_px = 36},
         .grid = {.rows = rows, .cols = cols, .geometry = info.largest_grid.geometry}};
 }
 
-const Wish kPlanes = PlanesWish{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
+const Selection kPlanes = PlaneSelection{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
 
-TEST(FeedTest, DemandIsTheUnionOfWishes) {
+TEST(FeedTest, DemandIsTheUnionOfSelections) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
     EXPECT_TRUE(feed->demand().empty());
-    const auto small = Feed::subscribe(feed, views_wish(*feed, 3, 3), [](const FramePtr&) {});
-    const auto wide = Feed::subscribe(feed, views_wish(*feed, 1, 6), [](const FramePtr&) {});
+    const auto small = Feed::subscribe(feed, views_selection(*feed, 3, 3), [](const FramePtr&) {});
+    const auto wide = Feed::subscribe(feed, views_selection(*feed, 1, 6), [](const FramePtr&) {});
     auto planes = Feed::subscribe(feed, kPlanes, [](const FramePtr&) {});
     const Demand demand = feed->demand();
     ASSERT_EQ(demand.views.size(), 1U);
@@ -39,39 +39,39 @@ TEST(FeedTest, DemandIsTheUnionOfWishes) {
 
 TEST(FeedTest, NestedGridsShareTheirViews) {
     const auto feed = std::make_shared<Feed>(test::synthetic_info());
-    const auto small = Feed::subscribe(feed, views_wish(*feed, 3, 3), [](const FramePtr&) {});
-    const auto large = Feed::subscribe(feed, views_wish(*feed, 6, 6), [](const FramePtr&) {});
+    const auto small = Feed::subscribe(feed, views_selection(*feed, 3, 3), [](const FramePtr&) {});
+    const auto large = Feed::subscribe(feed, views_selection(*feed, 6, 6), [](const FramePtr&) {});
     const Demand demand = feed->demand();
     EXPECT_EQ(demand.asked_views, 45U);
     ASSERT_EQ(demand.views.size(), 1U);
     EXPECT_EQ(demand.views[0].positions.size(), 36U) << "the nine are among the thirty-six";
 }
 
-TEST(FeedTest, RefusedChangeKeepsTheOldWish) {
+TEST(FeedTest, RefusedChangeKeepsTheOldSelection) {
     ChannelInfo info = test::synthetic_info();
     info.max_view_pixels = 9ULL * 64 * 36;
     const auto feed = std::make_shared<Feed>(info);
-    auto subscription = Feed::subscribe(feed, views_wish(*feed, 3, 3), [](const FramePtr&) {});
-    EXPECT_TRUE(subscription->change(views_wish(*feed, 3, 4)).has_value());
+    auto subscription = Feed::subscribe(feed, views_selection(*feed, 3, 3), [](const FramePtr&) {});
+    EXPECT_TRUE(subscription->change(views_selection(*feed, 3, 4)).has_value());
     EXPECT_EQ(feed->demand().views[0].positions.size(), 9U);
-    EXPECT_FALSE(Feed::subscribe(feed, views_wish(*feed, 4, 4), [](const FramePtr&) {}).has_value());
+    EXPECT_FALSE(Feed::subscribe(feed, views_selection(*feed, 4, 4), [](const FramePtr&) {}).has_value());
 }
 
-Wish in_quality(Wish wish, std::uint8_t quality) {
-    const codec::Encoding encoding{.codec = codec::CodecId::kJpeg, .quality = quality};
-    if (auto* views = std::get_if<ViewsWish>(&wish)) {
+Selection in_quality(Selection selection, std::uint8_t quality) {
+    const codec::Encoding encoding{.codec = Codec::kJpeg, .quality = quality};
+    if (auto* views = std::get_if<ViewSelection>(&selection)) {
         views->format.encoding = encoding;
     } else {
-        std::get<PlanesWish>(wish).choices.front().encoding = encoding;
+        std::get<PlaneSelection>(selection).choices.front().encoding = encoding;
     }
-    return wish;
+    return selection;
 }
 
 TEST(FeedTest, EveryEncodingOfViewsCountsInTheBudget) {
     ChannelInfo info = test::synthetic_info();
     info.max_view_pixels = 2 * 9ULL * 64 * 36;
     const auto feed = std::make_shared<Feed>(info);
-    const Wish views = views_wish(*feed, 3, 3);
+    const Selection views = views_selection(*feed, 3, 3);
     const auto one = Feed::subscribe(feed, in_quality(views, 40), [](const FramePtr&) {});
     const auto two = Feed::subscribe(feed, in_quality(views, 55), [](const FramePtr&) {});
     const auto same = Feed::subscribe(feed, in_quality(views, 55), [](const FramePtr&) {});
@@ -152,7 +152,7 @@ TEST(FeedTest, SubscribersComeAndGoWhilePublishing) {
         subscribers.emplace_back([&feed, i] {
             for (int round = 0; round < 5; ++round) {
                 const auto frames = std::make_shared<Arrivals>();
-                auto subscription = Feed::subscribe(feed, views_wish(*feed, 1, i + 1),
+                auto subscription = Feed::subscribe(feed, views_selection(*feed, 1, i + 1),
                                                     [frames](const FramePtr&) { frames->count_one(); });
                 ASSERT_TRUE(subscription.has_value());
                 EXPECT_FALSE(subscription->change(kPlanes).has_value());

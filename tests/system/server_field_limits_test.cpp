@@ -174,7 +174,7 @@ TEST_F(FieldLimitsTest, TheLongestLadderOfTheLargestConfigureIsSmall) {
     bounds.set_min_view_height_px(1);
     bounds.set_min_rows(1);
     bounds.set_min_cols(1);
-    Configuration granted{.feed = std::make_shared<feed::Feed>(info), .view_set = {}, .wish = feed::ViewsWish{}};
+    Configuration granted{.feed = std::make_shared<feed::Feed>(info), .view_set = {}, .selection = feed::ViewSelection{}};
     granted.view_set.grid.rows = 1;
     granted.view_set.grid.cols = kMaxViews;
     granted.view_set.width_px = granted.view_set.height_px = kMaxPlaneSide;

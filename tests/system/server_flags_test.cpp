@@ -324,19 +324,19 @@ TEST(Flags, APresetGivesDefaultsThatOtherFlagsReplace) {
     const Config paper = read({"--scene", kFile, "--preset", "paper"}).config;
     EXPECT_EQ(paper.settings, find_preset("paper", 6, 6)->settings);
     EXPECT_EQ(paper.guard_band_mode, GuardBandMode::kFixed);
-    const Config other = read({"--scene", kFile, "--preset", "paper", "--accumulate-views", "off", "--route", "red",
+    const Config other = read({"--scene", kFile, "--preset", "paper", "--accumulate-views", "off", "--denoise", "views",
                                "--denoiser", "svgf+", "--holes", "cascade", "--guard-band", "auto"})
                              .config;
     EXPECT_FALSE(other.settings.accumulate_views);
-    EXPECT_EQ(other.settings.route, Route::kRed);
+    EXPECT_EQ(other.settings.denoised_images, DenoisedImages::kViews);
     EXPECT_EQ(other.settings.denoiser, Denoiser::kSvgfPlus);
     EXPECT_EQ(other.settings.holes.cascade_rows, 6U);
     EXPECT_EQ(other.settings.light_sampling, LightSampling::plain()); // the preset's
     EXPECT_EQ(other.guard_band_mode, GuardBandMode::kAuto);
-    EXPECT_EQ(read({"--scene", kFile}).config.settings, find_preset("ours", 6, 6)->settings);
+    EXPECT_EQ(read({"--scene", kFile}).config.settings, find_preset("default", 6, 6)->settings);
     EXPECT_THAT(read({"--scene", kFile, "--preset", "best"}).problems,
                 Contains(HasSubstr("--preset best: one of reprojected")));
-    EXPECT_THAT(read({"--scene", kFile, "--route", "blue"}).problems, Contains(HasSubstr("--route blue")));
+    EXPECT_THAT(read({"--scene", kFile, "--denoise", "blue"}).problems, Contains(HasSubstr("--denoise blue")));
 }
 
 TEST(Flags, PrintsAPresetThatItReads) {

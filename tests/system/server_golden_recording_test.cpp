@@ -25,14 +25,14 @@ void expect_recorded(const wire::EncodedPlane& encoded, std::uint64_t id) {
     Plane best = *codec::allocate_plane(encoded.semantic, encoded.format, encoded.width_px, encoded.height_px);
     Plane alone = best;
     for (const wire::EncodedStrip& strip : encoded.strips) {
-        const codec::CodecId codec = encoded.encoding.codec;
+        const Codec codec = encoded.encoding.codec;
         const auto decoded =
             codec::decode_strip(*strip.best.bytes, strip.band, {.codec = codec, .reference = &expected}, best);
         ASSERT_TRUE(decoded.has_value()) << decoded.error().message;
         const auto decoded_alone = codec::decode_strip(*strip.alone.bytes, strip.band, {.codec = codec}, alone);
         ASSERT_TRUE(decoded_alone.has_value()) << decoded_alone.error().message;
     }
-    if (!codec::is_lossy(encoded.encoding.codec)) {
+    if (!is_lossy(encoded.encoding.codec)) {
         EXPECT_TRUE(best == expected) << "frame " << id << ", plane " << static_cast<int>(encoded.semantic);
         EXPECT_TRUE(alone == expected) << "frame " << id << ", plane " << static_cast<int>(encoded.semantic);
     }
@@ -62,15 +62,15 @@ TEST(GoldenRecording, Version1TellsItsForms) {
     const Recording recording(kFile);
     const auto& forms = recording.info().recorded;
     ASSERT_EQ(forms.size(), 3U);
-    const auto& lossless = std::get<feed::ViewsWish>(forms[0]);
+    const auto& lossless = std::get<feed::ViewSelection>(forms[0]);
     EXPECT_EQ(lossless.grid.rows, 2U);
     EXPECT_EQ(lossless.format.width_px, 32U);
-    EXPECT_EQ(lossless.format.encoding.codec, codec::CodecId::kZstdFiltered);
-    const auto& lossy = std::get<feed::ViewsWish>(forms[1]);
+    EXPECT_EQ(lossless.format.encoding.codec, Codec::kZstdFiltered);
+    const auto& lossy = std::get<feed::ViewSelection>(forms[1]);
     EXPECT_EQ(lossy.grid.cols, 2U);
     EXPECT_EQ(lossy.format.height_px, 9U);
-    EXPECT_EQ(lossy.format.encoding, (codec::Encoding{codec::CodecId::kJpeg, 90}));
-    const auto& planes = std::get<feed::PlanesWish>(forms[2]);
+    EXPECT_EQ(lossy.format.encoding, (codec::Encoding{Codec::kJpeg, 90}));
+    const auto& planes = std::get<feed::PlaneSelection>(forms[2]);
     ASSERT_EQ(planes.choices.size(), 6U);
     EXPECT_EQ(planes.choices[0].semantic, PlaneSemantic::kDiffuse);
     EXPECT_EQ(planes.choices[5].semantic, PlaneSemantic::kMaterial);

@@ -127,7 +127,7 @@ TEST(ServiceLimits, AllSessionsTogetherHaveABudgetOfBytes) {
     OpenCall silent(connect(served.port()));
     silent.configure();
     ASSERT_TRUE(silent.read_frame().has_value()) << "one may go alone; it is not acknowledged";
-    const feed::Wish planes = feed::PlanesWish{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
+    const feed::Selection planes = feed::PlaneSelection{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
     const auto recorder = feed::Feed::subscribe(served.feed(), planes, [](const feed::FramePtr&) {});
     ASSERT_TRUE(recorder.has_value()) << "the channel goes on, whoever else has room";
     OpenCall other(connect(served.port()));

@@ -91,7 +91,7 @@ TEST_F(Observation, CountsFramesBytesAndSessions) {
     wanted.mutable_grid()->set_rows(2);
     wanted.mutable_grid()->set_cols(3);
     call.configure(wanted);
-    const feed::Wish planes = feed::PlanesWish{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
+    const feed::Selection planes = feed::PlaneSelection{.choices = {{.semantic = PlaneSemantic::kDiffuse}}};
     const auto recorder = feed::Feed::subscribe(channel.feed(), planes, [](const feed::FramePtr&) {});
     ASSERT_TRUE(recorder.has_value()) << "the channel goes on, whoever else has room";
     std::uint64_t payload_bytes = 0;
@@ -104,7 +104,7 @@ TEST_F(Observation, CountsFramesBytesAndSessions) {
     EXPECT_TRUE(shows("fieldcast_frames_sent_total{channel=\"synthetic\"} 2\n"));
     EXPECT_TRUE(shows("fieldcast_sessions{channel=\"synthetic\",mode=\"views\",grid=\"2x3\"} 1\n"));
     EXPECT_TRUE(shows("fieldcast_frames_in_flight{channel=\"synthetic\"} 2\n"));
-    EXPECT_TRUE(shows("fieldcast_plane_bytes_total{channel=\"synthetic\",plane=\"colour\",codec=\"zstd_filtered\"} " +
+    EXPECT_TRUE(shows("fieldcast_plane_bytes_total{channel=\"synthetic\",plane=\"colour\",codec=\"zstd\"} " +
                       std::to_string(payload_bytes) + "\n"));
     EXPECT_TRUE(lacks("fieldcast_frames_dropped_total{channel=\"synthetic\",reason=\"no_credit\"} 0\n"))
         << "the channel goes on";
@@ -126,7 +126,7 @@ TEST_F(Observation, CountsPlanesOfModeScene) {
     call.configure(wanted);
     ASSERT_TRUE(call.read_frame().has_value());
     for (const char* const plane : {"diffuse", "specular", "depth", "normal", "id", "material"}) {
-        EXPECT_TRUE(shows("plane=\"" + std::string(plane) + "\",codec=\"zstd_filtered\"} "));
+        EXPECT_TRUE(shows("plane=\"" + std::string(plane) + "\",codec=\"zstd\"} "));
     }
     EXPECT_TRUE(shows("mode=\"scene\""));
     call.cancel();

@@ -189,9 +189,9 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
         if (own && i % 7 == 0) { // this one gets as far as frames
             Guarded<bool> has_frame;
             std::condition_variable came;
-            feed::ViewsWish wish;
-            wish.format.width_px = wish.format.height_px = 4;
-            auto subscription = feed::Feed::subscribe(own->feed(), wish, [&](const feed::FramePtr&) {
+            feed::ViewSelection selection;
+            selection.format.width_px = selection.format.height_px = 4;
+            auto subscription = feed::Feed::subscribe(own->feed(), selection, [&](const feed::FramePtr&) {
                 *has_frame.lock() = true;
                 came.notify_all();
             });
@@ -227,7 +227,7 @@ TEST_F(OwnCamerasTest, TheChannelWaitsAsLongAsItsSlowestCamera) {
     feed::OwnFeed own = open();
     const auto now = std::chrono::steady_clock::now();
     EXPECT_EQ(channel_->waiting_time(now + 5s), 0ns) << "nobody has subscribed";
-    const auto subscription = feed::Feed::subscribe(own.feed(), feed::PlanesWish{}, [](const feed::FramePtr&) {});
+    const auto subscription = feed::Feed::subscribe(own.feed(), feed::PlaneSelection{}, [](const feed::FramePtr&) {});
     EXPECT_GE(channel_->waiting_time(now + 5s), 4s);
     workshop_.open();
 }

@@ -249,7 +249,7 @@ TEST_F(ServerProcess, RenderWritesALightFieldWithoutServing) {
 }
 
 TEST_F(ServerProcess, ViewsThatTheDeviceCannotDenoiseEndTheStart) {
-    Program process = start({"render", "--scene", kScene, "--route", "red", "--size", "8192x8192", "--largest-grid",
+    Program process = start({"render", "--scene", kScene, "--denoise", "views", "--size", "8192x8192", "--largest-grid",
                              "8x9", "--count", "1"}); // 4.8 · 10⁹ pixels: more than a texel buffer can have
     EXPECT_EQ(process.exit_code(kPatience), 2);
     EXPECT_NE(process.text().find("72 views of 8192x8192 are too many for"), std::string::npos) << process.text();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/recording/form.h"
+#include "server/recording/recorded_form.h"
 #include "server/session/negotiate.h"
 #include "server_synthetic.h"
 
@@ -15,8 +15,8 @@ class Recorded : public testing::Test {
 protected:
     Recorded() {
         feed::ChannelInfo info = test::synthetic_info("hall");
-        for (const char* const form : {"views:3x3:32x18", "views:3x3:32x18:jpeg:40", "planes"}) {
-            info.recorded.push_back(recording::wish_of(*recording::parse_form(form), info));
+        for (const char* const form : {"views:3x3:32x18", "views:3x3:32x18:jpeg:40", "illumination"}) {
+            info.recorded.push_back(recording::selection_of(*recording::parse_form(form), info));
         }
         channels_.push_back(std::make_shared<feed::Feed>(info));
     }
@@ -46,7 +46,7 @@ protected:
     codec::Encoding encoding() {
         const auto answer = ask();
         EXPECT_TRUE(answer.has_value());
-        return answer ? std::get<feed::ViewsWish>(answer->wish).format.encoding : codec::Encoding{};
+        return answer ? std::get<feed::ViewSelection>(answer->selection).format.encoding : codec::Encoding{};
     }
 
     std::vector<std::shared_ptr<feed::Feed>> channels_;
@@ -88,11 +88,11 @@ TEST_F(Recorded, OtherSpacingsAreOtherViews) {
 
 TEST_F(Recorded, CodecsThatWereNotRecordedArePassedOver) {
     want_codecs(v1::PLANE_SEMANTIC_COLOUR, {v1::CODEC_RAW, v1::CODEC_JPEG, v1::CODEC_ZSTD_FILTERED});
-    EXPECT_EQ(encoding(), (codec::Encoding{.codec = codec::CodecId::kJpeg, .quality = 40}))
+    EXPECT_EQ(encoding(), (codec::Encoding{.codec = Codec::kJpeg, .quality = 40}))
         << "wanted before ZSTD_FILTERED";
     wanted_.clear_codecs();
     want_codecs(v1::PLANE_SEMANTIC_COLOUR, {v1::CODEC_JPEG});
-    EXPECT_EQ(encoding(), (codec::Encoding{.codec = codec::CodecId::kJpeg, .quality = 40}));
+    EXPECT_EQ(encoding(), (codec::Encoding{.codec = Codec::kJpeg, .quality = 40}));
     wanted_.clear_codecs();
     want_codecs(v1::PLANE_SEMANTIC_COLOUR, {v1::CODEC_JPEG}, 41);
     EXPECT_EQ(refusal().reason, v1::REFUSAL_REASON_UNSUPPORTED);
@@ -122,7 +122,7 @@ TEST_F(Recorded, ModesAreTriedInTheirOrder) {
     wanted_.add_modes(v1::DELIVERY_MODE_SCENE);
     const auto answer = ask();
     ASSERT_TRUE(answer.has_value()) << answer.error().message;
-    EXPECT_EQ(answer->mode, v1::DELIVERY_MODE_SCENE);
+    EXPECT_EQ(answer->mode, DeliveryMode::kScene);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame_time.h"
-#include "server/recording/form.h"
+#include "server/recording/recorded_form.h"
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
 #include "server/session/recorded.h"
@@ -17,32 +17,32 @@ using testing::HasSubstr;
 
 constexpr auto kPatience = 20s; // of a test on a busy machine
 
-feed::Wish views_wish(const feed::ChannelInfo& info) {
-    return wish_of(*parse_form("views:2x2:32x18"), info);
+feed::Selection views_selection(const feed::ChannelInfo& info) {
+    return selection_of(*parse_form("views:2x2:32x18"), info);
 }
 
 /// What the tests record: four small views and the illumination.
-std::vector<feed::Wish> wishes_of(const feed::ChannelInfo& info) {
-    return {views_wish(info), wish_of(*parse_form("planes"), info)};
+std::vector<feed::Selection> selections_of(const feed::ChannelInfo& info) {
+    return {views_selection(info), selection_of(*parse_form("illumination"), info)};
 }
 
 feed::Demand demand_of(const feed::ChannelInfo& info) {
     feed::Demand demand;
-    for (const feed::Wish& wish : wishes_of(info)) {
-        feed::add(demand, wish);
+    for (const feed::Selection& selection : selections_of(info)) {
+        feed::add(demand, selection);
     }
     demand.needs_alone = true;
     return demand;
 }
 
-/// Everything that a client would receive of its wish, in bytes.
-std::string bytes_of(const feed::EncodedFrame& frame, const feed::Wish& wish, bool has_key_frame) {
+/// Everything that a client would receive of its selection, in bytes.
+std::string bytes_of(const feed::EncodedFrame& frame, const feed::Selection& selection, bool has_key_frame) {
     const wire::ChunkOptions options{.epoch = 3, .has_key_frame = has_key_frame};
     wire::WireFrame chunks;
-    if (const auto* planes = std::get_if<feed::PlanesWish>(&wish)) {
+    if (const auto* planes = std::get_if<feed::PlaneSelection>(&selection)) {
         chunks = wire::source_chunks(*frame.source, planes->choices, options);
     } else {
-        const auto& views = std::get<feed::ViewsWish>(wish);
+        const auto& views = std::get<feed::ViewSelection>(selection);
         chunks = wire::view_chunks(*feed::find_views(frame, views.format), views.grid, options);
     }
     std::string bytes;
@@ -64,7 +64,7 @@ protected:
     /// Six frames: 5 and 8 are key frames, others refer to them, the first refers to one that is not recorded.
     void write() {
         feed::ChannelInfo info = info_;
-        info.recorded = wishes_of(info_);
+        info.recorded = selections_of(info_);
         RecordingWriter writer(file_, info);
         for (const auto& [id, key] : {std::pair(4U, 1U), {5U, 5U}, {6U, 5U}, {7U, 5U}, {8U, 8U}, {9U, 8U}}) {
             frames_.push_back(test::synthetic_frame(info_, demand_of(info_), id, pool_, key));
@@ -82,10 +82,10 @@ protected:
     }
 
     void expect_same(const feed::EncodedFrame& frame, std::size_t i) {
-        for (const feed::Wish& wish : wishes_of(info_)) {
-            EXPECT_EQ(bytes_of(frame, wish, false), bytes_of(*frames_[i], wish, false)) << i;
+        for (const feed::Selection& selection : selections_of(info_)) {
+            EXPECT_EQ(bytes_of(frame, selection, false), bytes_of(*frames_[i], selection, false)) << i;
             if (i > 0) { // the key frame of the first is not in the file
-                EXPECT_EQ(bytes_of(frame, wish, true), bytes_of(*frames_[i], wish, true)) << i;
+                EXPECT_EQ(bytes_of(frame, selection, true), bytes_of(*frames_[i], selection, true)) << i;
             }
         }
     }
@@ -103,7 +103,7 @@ TEST_F(RecordingTest, GivesBackEveryByte) {
     write();
     Recording recording(file_);
     EXPECT_EQ(recording.info().name, "hall");
-    EXPECT_EQ(recording.info().recorded, wishes_of(info_));
+    EXPECT_EQ(recording.info().recorded, selections_of(info_));
     EXPECT_EQ(recording.info().scene_hash, info_.scene_hash);
     EXPECT_EQ(*recording.info().bundle, *info_.bundle) << "clients need the scene for planes";
     EXPECT_FALSE(recording.ignored().has_value());
@@ -114,8 +114,8 @@ TEST_F(RecordingTest, GivesBackEveryByte) {
     EXPECT_EQ(recording.frames()[0].mark.key_frame_id, 0U);
     EXPECT_EQ(recording.frames()[3].mark.key_frame_id, 5U);
     EXPECT_EQ(recording.frames()[5].mark.at_ns, 100'000'000);
-    EXPECT_NE(bytes_of(*recording.read(2), views_wish(info_), true),
-              bytes_of(*recording.read(2), views_wish(info_), false))
+    EXPECT_NE(bytes_of(*recording.read(2), views_selection(info_), true),
+              bytes_of(*recording.read(2), views_selection(info_), false))
         << "frame 6 refers to frame 5: otherwise the test shows nothing about key frames";
 }
 
@@ -145,7 +145,7 @@ TEST_F(RecordingTest, EveryCutTailIsIgnoredAndReported) {
 TEST_F(RecordingTest, NoDamagedByteGoesUnnoticed) {
     feed::ChannelInfo small = info_;
     small.bundle = nullptr;
-    small.recorded = {wish_of(*parse_form("views:1x1:8x4"), small)};
+    small.recorded = {selection_of(*parse_form("views:1x1:8x4"), small)};
     feed::Demand demand;
     feed::add(demand, small.recorded[0]);
     demand.needs_alone = true;
@@ -190,7 +190,7 @@ TEST_F(RecordingTest, LengthsAreCheckedBeforeMemoryIsTaken) {
 TEST_F(RecordingTest, RecordsAChannelAsItIsPublished) {
     const auto feed = std::make_shared<feed::Feed>(info_);
     {
-        Recorder recorder(feed, {.file = file_, .wishes = wishes_of(info_), .max_frames = 3}, registry_);
+        Recorder recorder(feed, {.file = file_, .selections = selections_of(info_), .max_frames = 3}, registry_);
         EXPECT_TRUE(feed->demand().needs_alone) << "clients of a replay join anywhere";
         const auto deadline = std::chrono::steady_clock::now() + kPatience;
         for (std::uint64_t id = 1; !recorder.has_ended(); ++id) {
@@ -221,7 +221,7 @@ TEST_F(RecordingTest, ReplaysInALoop) {
     std::condition_variable changed; // outlives the replay, which may call once more after the subscription has ended
     Replay replay({.file = file_, .name = "again", .frames_per_second = 200.0F}, registry_);
     EXPECT_EQ(replay.feed()->info().name, "again");
-    auto subscription = feed::Feed::subscribe(replay.feed(), views_wish(info_), [&](const feed::FramePtr& frame) {
+    auto subscription = feed::Feed::subscribe(replay.feed(), views_selection(info_), [&](const feed::FramePtr& frame) {
         shown.lock()->push_back(frame);
         changed.notify_all();
     });
@@ -258,7 +258,7 @@ TEST_F(RecordingTest, ReplaysSlowlyAtTinyFrameRates) {
     Guarded<std::size_t> shown(0);
     std::condition_variable changed;
     Replay replay({.file = file_, .name = "slow", .frames_per_second = 1e-30F}, registry_);
-    auto subscription = feed::Feed::subscribe(replay.feed(), views_wish(info_), [&](const feed::FramePtr&) {
+    auto subscription = feed::Feed::subscribe(replay.feed(), views_selection(info_), [&](const feed::FramePtr&) {
         ++*shown.lock();
         changed.notify_all();
     });
@@ -273,19 +273,19 @@ TEST_F(RecordingTest, ReplaysSlowlyAtTinyFrameRates) {
 
 TEST(RecordingForm, ReadsWhatCanBeTyped) {
     const feed::ChannelInfo info = test::synthetic_info();
-    const auto text = [&](const char* form) { return feed::to_text(wish_of(*parse_form(form), info)); };
+    const auto text = [&](const char* form) { return feed::to_text(selection_of(*parse_form(form), info)); };
     EXPECT_EQ(text("views"), "views 6x6 of 64x36 zstd");
     EXPECT_EQ(text("views:raw"), "views 6x6 of 64x36 raw");
     EXPECT_EQ(text("views:3x4:32x18:jpeg:50"), "views 3x4 of 32x18 jpeg 50");
-    EXPECT_EQ(text("planes:jpeg"), "planes diffuse jpeg 75, specular jpeg 75");
+    EXPECT_EQ(text("illumination:jpeg"), "planes diffuse jpeg 75, specular jpeg 75");
     EXPECT_EQ(text("g-buffer"),
               "planes diffuse zstd, specular zstd, depth zstd, normal zstd, id zstd, material zstd");
     for (const char* const wrong : {"", "view", "views:", "views:3", "views:3x3:64x36:zstd:5", "views:3x3:jpeg:0",
-                                    "views:jpeg:101", "planes:3x3", "views:3x3:4x4:5x5", "g-buffer:raw:raw"}) {
+                                    "views:jpeg:101", "illumination:3x3", "views:3x3:4x4:5x5", "g-buffer:raw:raw"}) {
         EXPECT_FALSE(parse_form(wrong).has_value()) << wrong;
     }
-    EXPECT_THROW(wish_of(*parse_form("views:2x2:65x36"), info), UserError);
-    EXPECT_THROW(wish_of(*parse_form("views:20x20"), info), UserError);
+    EXPECT_THROW(selection_of(*parse_form("views:2x2:65x36"), info), UserError);
+    EXPECT_THROW(selection_of(*parse_form("views:20x20"), info), UserError);
 }
 
 } // namespace

@@ -69,12 +69,12 @@ struct Client {
 /// again.
 TEST(ReplaySessions, ComeAndGo) {
     const test::TestFolder folder;
-    test::write_synthetic_recording(folder / "hall.fcrec", {"views:2x2:32x18", "planes"}, 7);
+    test::write_synthetic_recording(folder / "hall.fcrec", {"views:2x2:32x18", "illumination"}, 7);
     metrics::Registry registry;
     recording::Replay replay({.file = folder / "hall.fcrec", .name = "", .frames_per_second = 100.0F}, registry);
     recording::Replay other({.file = folder / "hall.fcrec", .name = "other", .frames_per_second = 80.0F}, registry);
     recording::Recorder recorder(
-        replay.feed(), {.file = folder / "again.fcrec", .wishes = replay.feed()->info().recorded, .max_frames = 5},
+        replay.feed(), {.file = folder / "again.fcrec", .selections = replay.feed()->info().recorded, .max_frames = 5},
         registry);
     std::vector<std::jthread> clients;
     for (int i = 0; i < 4; ++i) {

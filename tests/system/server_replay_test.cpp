@@ -33,15 +33,15 @@ protected:
                         service::Observation{.registry = registry_});
     }
 
-    /// What the recording has for `wish` in the frame that became `frame_id`.
-    wire::WireFrame recorded(const feed::ViewsWish& wish, std::uint64_t frame_id, bool has_key_frame) {
+    /// What the recording has for `selection` in the frame that became `frame_id`.
+    wire::WireFrame recorded(const feed::ViewSelection& selection, std::uint64_t frame_id, bool has_key_frame) {
         const auto frame = recording_->read((frame_id - 1) % kFrames);
         EXPECT_TRUE(frame.has_value());
-        return wire::view_chunks(*feed::find_views(*frame, wish.format), wish.grid, {.has_key_frame = has_key_frame});
+        return wire::view_chunks(*feed::find_views(*frame, selection.format), selection.grid, {.has_key_frame = has_key_frame});
     }
 
     /// The next frame as it comes: payloads of all chunks and the trailer's CRC must be those of the recording.
-    void expect_next_frame_as_recorded(test::OpenCall& call, const feed::ViewsWish& wish) {
+    void expect_next_frame_as_recorded(test::OpenCall& call, const feed::ViewSelection& selection) {
         std::vector<std::string> payloads;
         std::optional<v1::FrameHeader> header;
         for (auto message = call.read_until(v1::ServerMessage::kFrameChunk); message;
@@ -55,7 +55,7 @@ protected:
                 continue;
             }
             ASSERT_TRUE(header.has_value());
-            const wire::WireFrame same = recorded(wish, chunk.frame_id(), header->key_frame_id() != 0);
+            const wire::WireFrame same = recorded(selection, chunk.frame_id(), header->key_frame_id() != 0);
             ASSERT_EQ(payloads.size(), same.chunks.size() + 1);
             for (std::size_t i = 0; i < same.chunks.size(); ++i) {
                 const auto bytes = same.chunks[i].payload;
@@ -87,10 +87,10 @@ TEST_F(ServedReplay, ClientsGetTheBytesThatWereRecorded) {
         wanted.mutable_grid()->set_cols(2);
         wanted.set_keeps_key_frames(keeps_key_frames);
         call.configure(wanted);
-        feed::ViewsWish wish = std::get<feed::ViewsWish>(recording_->info().recorded.at(0));
-        wish.grid.rows = wish.grid.cols = 2;
+        feed::ViewSelection selection = std::get<feed::ViewSelection>(recording_->info().recorded.at(0));
+        selection.grid.rows = selection.grid.cols = 2;
         for (std::uint64_t i = 0; i < 2 * kFrames; ++i) {
-            ASSERT_NO_FATAL_FAILURE(expect_next_frame_as_recorded(call, wish));
+            ASSERT_NO_FATAL_FAILURE(expect_next_frame_as_recorded(call, selection));
         }
         call.half_close();
         EXPECT_TRUE(call.finish().ok());

@@ -28,7 +28,7 @@ session::Limits test_limits() {
     return limits;
 }
 
-v1::Configure wish(v1::DeliveryMode mode) {
+v1::Configure selection(v1::DeliveryMode mode) {
     v1::Configure wanted;
     wanted.add_modes(mode);
     wanted.mutable_grid()->set_rows(3);
@@ -67,7 +67,7 @@ protected:
 
 TEST_F(Service, SendsViews) {
     OpenCall call(connection_);
-    call.configure(wish(v1::DELIVERY_MODE_VIEWS));
+    call.configure(selection(v1::DELIVERY_MODE_VIEWS));
     const auto configured = call.read_until(Kind::kConfigured);
     ASSERT_TRUE(configured.has_value());
     EXPECT_EQ(configured->configured().view_set().grid().rows(), 3U);
@@ -89,7 +89,7 @@ TEST_F(Service, SendsViews) {
 
 TEST_F(Service, SendsPlanesWithTheGuardBand) {
     OpenCall call(connection_);
-    v1::Configure wanted = wish(v1::DELIVERY_MODE_SCENE);
+    v1::Configure wanted = selection(v1::DELIVERY_MODE_SCENE);
     wanted.set_planes(v1::PLANE_SET_WITH_G_BUFFER);
     call.configure(wanted);
     const auto configured = call.read_until(Kind::kConfigured);
@@ -109,12 +109,12 @@ TEST_F(Service, SendsPlanesWithTheGuardBand) {
 
 TEST_F(Service, RefusesUnknownModesAndCarriesOn) {
     OpenCall call(connection_);
-    call.configure(wish(static_cast<v1::DeliveryMode>(99)));
+    call.configure(selection(static_cast<v1::DeliveryMode>(99)));
     const auto refused = call.read_until(Kind::kRefused);
     ASSERT_TRUE(refused.has_value());
     EXPECT_EQ(refused->refused().field(), "modes");
     EXPECT_EQ(refused->refused().reason(), v1::REFUSAL_REASON_UNSUPPORTED);
-    call.configure(wish(v1::DELIVERY_MODE_VIEWS));
+    call.configure(selection(v1::DELIVERY_MODE_VIEWS));
     EXPECT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
     call.half_close();
     EXPECT_TRUE(call.finish().ok());
@@ -137,7 +137,7 @@ TEST_F(Service, EndsStreamsOfOversizedMessages) {
 
 TEST_F(Service, ClientThatNeverAcknowledgesGetsItsCreditsOnly) {
     OpenCall call(connection_);
-    call.configure(wish(v1::DELIVERY_MODE_VIEWS));
+    call.configure(selection(v1::DELIVERY_MODE_VIEWS));
     std::uint32_t frames = 0;
     for (int heartbeats = 0; frames < session::kMinCredits || heartbeats < 4;) { // four with all credits used
         const auto message = call.read();
@@ -155,7 +155,7 @@ TEST_F(Service, ManyClientsComeAndGo) {
     for (int i = 0; i < 8; ++i) {
         clients.emplace_back([&, i] {
             OpenCall call(connect(server_.port()));
-            call.configure(wish(i % 2 == 0 ? v1::DELIVERY_MODE_VIEWS : v1::DELIVERY_MODE_SCENE));
+            call.configure(selection(i % 2 == 0 ? v1::DELIVERY_MODE_VIEWS : v1::DELIVERY_MODE_SCENE));
             for (int frame = 0; frame < 5;) {
                 const auto message = call.read_until(Kind::kFrameChunk);
                 ASSERT_TRUE(message.has_value()) << call.finish().error_message();
@@ -192,7 +192,7 @@ TEST_F(Service, RefusesSessionsBeyondItsLimit) {
 
 TEST_F(Service, DrainsWithClientsThatHalfClose) {
     OpenCall call(connection_);
-    call.configure(wish(v1::DELIVERY_MODE_VIEWS));
+    call.configure(selection(v1::DELIVERY_MODE_VIEWS));
     ASSERT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
     EXPECT_EQ(health(), "\x08\x01"); // status: SERVING
     server_.begin_drain("a test");
@@ -208,7 +208,7 @@ TEST_F(Service, DrainsWithClientsThatHalfClose) {
 
 TEST_F(Service, CutsClientsThatDoNotLeave) {
     OpenCall call(connection_);
-    call.configure(wish(v1::DELIVERY_MODE_VIEWS));
+    call.configure(selection(v1::DELIVERY_MODE_VIEWS));
     ASSERT_TRUE(call.read_until(Kind::kFrameChunk).has_value());
     server_.begin_drain("a test");
     EXPECT_EQ(call.finish().error_code(), StatusCode::DEADLINE_EXCEEDED);

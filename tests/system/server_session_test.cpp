@@ -153,7 +153,7 @@ TEST_F(SessionTest, ReconfiguringAbortsTheFrameBeingSent) {
     EXPECT_EQ(next().frame_chunk().header().planes().planes_size(), 2);
 }
 
-TEST_F(SessionTest, SkipsFramesMadeForAnEarlierWish) {
+TEST_F(SessionTest, SkipsFramesMadeForAnEarlierSelection) {
     configure();
     const feed::FramePtr old = test::synthetic_frame(feed_->info(), feed_->demand(now_), 1, pool_);
     v1::Configure wanted;
@@ -259,7 +259,7 @@ TEST_F(SessionTest, ClientThatNeverAcknowledgesIsSentAway) {
 TEST_F(SessionTest, NestedGridsShareViews) {
     const auto other = feed::Feed::subscribe(
         feed_,
-        feed::ViewsWish{.format = {.geometry = feed_->info().largest_grid.geometry,
+        feed::ViewSelection{.format = {.geometry = feed_->info().largest_grid.geometry,
                                    .fovy_rad = feed_->info().fovy_rad,
                                    .width_px = 64,
                                    .height_px = 36},

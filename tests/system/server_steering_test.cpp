@@ -36,9 +36,9 @@ protected:
 TEST_F(SteeringLeaseTest, OneSteersAtATime) {
     const auto first = join("ann");
     const auto second = join("bob");
-    lease_.request(first, SteeringWish::kNow, now_);
+    lease_.request(first, SteeringUrgency::kNow, now_);
     EXPECT_EQ(next<SteeringGrant>(first).lease, 1U);
-    lease_.request(second, SteeringWish::kNow, now_);
+    lease_.request(second, SteeringUrgency::kNow, now_);
     EXPECT_EQ(next<SteeringDenial>(second),
               (SteeringDenial{.reason = Reason::kHeld, .holder = "ann", .is_waiting = false, .ahead = 0}));
     EXPECT_TRUE(lease_.renew(first, now_));
@@ -46,14 +46,14 @@ TEST_F(SteeringLeaseTest, OneSteersAtATime) {
     lease_.release(first, now_);
     EXPECT_EQ(next<Loss>(first), (Loss{.lease = 1, .reason = Loss::Reason::kReleased}));
     EXPECT_EQ(lease_.next_notice(second), std::nullopt) << "it did not wait";
-    lease_.request(second, SteeringWish::kNow, now_);
+    lease_.request(second, SteeringUrgency::kNow, now_);
     EXPECT_EQ(next<SteeringGrant>(second).lease, 2U);
 }
 
 TEST_F(SteeringLeaseTest, AskingAgainKeepsTheLease) {
     const auto holder = join("ann");
-    lease_.request(holder, SteeringWish::kNow, now_);
-    lease_.request(holder, SteeringWish::kWait, now_ + 4s);
+    lease_.request(holder, SteeringUrgency::kNow, now_);
+    lease_.request(holder, SteeringUrgency::kWait, now_ + 4s);
     EXPECT_EQ(next<SteeringGrant>(holder).lease, 1U);
     EXPECT_EQ(next<SteeringGrant>(holder).lease, 1U);
     EXPECT_TRUE(lease_.renew(holder, now_ + 8s)) << "it was renewed";
@@ -62,8 +62,8 @@ TEST_F(SteeringLeaseTest, AskingAgainKeepsTheLease) {
 TEST_F(SteeringLeaseTest, ExpiresWithoutRenewal) {
     const auto holder = join("ann");
     const auto waiting = join("bob");
-    lease_.request(holder, SteeringWish::kNow, now_);
-    lease_.request(waiting, SteeringWish::kWait, now_);
+    lease_.request(holder, SteeringUrgency::kNow, now_);
+    lease_.request(waiting, SteeringUrgency::kWait, now_);
     next<SteeringGrant>(holder);
     EXPECT_TRUE(next<SteeringDenial>(waiting).is_waiting);
     EXPECT_TRUE(lease_.renew(holder, now_ + 4s));
@@ -79,9 +79,9 @@ TEST_F(SteeringLeaseTest, WaitingIsFirstComeFirstServed) {
     const auto holder = join("ann");
     const auto first = join("bob");
     const auto second = join("cid");
-    lease_.request(holder, SteeringWish::kNow, now_);
+    lease_.request(holder, SteeringUrgency::kNow, now_);
     for (const auto id : {first, second, first}) { // asking twice changes nothing
-        lease_.request(id, SteeringWish::kWait, now_);
+        lease_.request(id, SteeringUrgency::kWait, now_);
     }
     EXPECT_EQ(next<SteeringDenial>(second).ahead, 1U);
     EXPECT_EQ(next<SteeringDenial>(first).ahead, 0U);
@@ -97,9 +97,9 @@ TEST_F(SteeringLeaseTest, WaitingIsFirstComeFirstServed) {
 TEST_F(SteeringLeaseTest, AnOfferGoesToWhoWaitsOrToTheNextWhoAsks) {
     const auto ann = join("ann");
     const auto bob = join("bob");
-    lease_.request(ann, SteeringWish::kNow, now_);
+    lease_.request(ann, SteeringUrgency::kNow, now_);
     lease_.offer(bob, now_);
-    lease_.request(bob, SteeringWish::kWait, now_);
+    lease_.request(bob, SteeringUrgency::kWait, now_);
     EXPECT_EQ(next<SteeringDenial>(bob).reason, Reason::kHeld) << "what one does not hold one cannot offer";
     lease_.offer(ann, now_);
     next<SteeringGrant>(ann);
@@ -107,10 +107,10 @@ TEST_F(SteeringLeaseTest, AnOfferGoesToWhoWaitsOrToTheNextWhoAsks) {
     EXPECT_EQ(next<SteeringGrant>(bob).lease, 2U);
     lease_.offer(bob, now_);
     EXPECT_TRUE(lease_.renew(bob, now_)) << "nobody wants it yet";
-    lease_.request(ann, SteeringWish::kNow, now_);
+    lease_.request(ann, SteeringUrgency::kNow, now_);
     EXPECT_EQ(next<SteeringGrant>(ann).lease, 3U);
     EXPECT_EQ(next<Loss>(bob).reason, Loss::Reason::kHandedOver);
-    lease_.request(bob, SteeringWish::kNow, now_);
+    lease_.request(bob, SteeringUrgency::kNow, now_);
     EXPECT_EQ(next<SteeringDenial>(bob).reason, Reason::kHeld) << "an offer is for one";
 }
 
@@ -118,15 +118,15 @@ TEST_F(SteeringLeaseTest, RightsDecide) {
     const auto viewer = join("vera", SteeringRight::kNone);
     const auto pilot = join("paul");
     const auto operator_ = join("olga", SteeringRight::kTake);
-    lease_.request(viewer, SteeringWish::kWait, now_);
+    lease_.request(viewer, SteeringUrgency::kWait, now_);
     EXPECT_EQ(next<SteeringDenial>(viewer).reason, Reason::kRoleTooLow);
-    lease_.request(operator_, SteeringWish::kNow, now_);
-    lease_.request(pilot, SteeringWish::kTake, now_);
+    lease_.request(operator_, SteeringUrgency::kNow, now_);
+    lease_.request(pilot, SteeringUrgency::kTake, now_);
     EXPECT_EQ(next<SteeringDenial>(pilot).reason, Reason::kRoleTooLow);
     lease_.release(operator_, now_);
-    lease_.request(pilot, SteeringWish::kNow, now_);
+    lease_.request(pilot, SteeringUrgency::kNow, now_);
     next<SteeringGrant>(pilot);
-    lease_.request(operator_, SteeringWish::kTake, now_);
+    lease_.request(operator_, SteeringUrgency::kTake, now_);
     EXPECT_EQ(next<Loss>(pilot).reason, Loss::Reason::kTaken);
     EXPECT_TRUE(lease_.renew(operator_, now_));
 }
@@ -137,7 +137,7 @@ TEST(SteeringTest, NewestPoseWinsAndJumpsAreNotLost) {
     EXPECT_FALSE(steering->sample().has_value());
     SteeringSeat seat = Steering::join(steering, {.name = "ann", .right = SteeringRight::kSteer});
     EXPECT_FALSE(seat.steer({.sequence = 1}, now)) << "without a lease";
-    seat.request(SteeringWish::kNow, now);
+    seat.request(SteeringUrgency::kNow, now);
     EXPECT_TRUE(seat.steer({.sequence = 5, .cut = true}, now));
     EXPECT_TRUE(seat.steer({.sequence = 6, .client_time_ns = 60}, now));
     EXPECT_TRUE(seat.steer({.sequence = 6, .client_time_ns = 61}, now)) << "passed over, but a sign of life";
@@ -156,10 +156,10 @@ TEST(SteeringTest, ANewLeaseCountsItsPosesAnew) {
     const auto now = std::chrono::steady_clock::now(); // as for who leaves
     SteeringSeat ann = Steering::join(steering, {.name = "ann", .right = SteeringRight::kSteer});
     SteeringSeat bob = Steering::join(steering, {.name = "bob", .right = SteeringRight::kSteer});
-    ann.request(SteeringWish::kNow, now);
+    ann.request(SteeringUrgency::kNow, now);
     EXPECT_TRUE(ann.steer({.sequence = 1000}, now));
     ann.leave();
-    bob.request(SteeringWish::kNow, now);
+    bob.request(SteeringUrgency::kNow, now);
     EXPECT_TRUE(bob.steer({.sequence = 1}, now));
     EXPECT_EQ(steering->sample()->lease, 2U);
 }
@@ -367,7 +367,7 @@ TEST_F(SteeringSession, LeavingTheChannelLeavesTheCamera) {
     EXPECT_EQ(next().steering_released().reason(), v1::STEERING_RELEASE_REASON_RECONFIGURED);
     feed::SteeringSeat other =
         feed::Steering::join(steered_->steering(), {.name = "bob", .right = feed::SteeringRight::kSteer});
-    other.request(feed::SteeringWish::kNow, now_);
+    other.request(feed::SteeringUrgency::kNow, now_);
     EXPECT_TRUE(other.renew(now_));
 }
 
@@ -376,7 +376,7 @@ TEST_F(SteeringSession, EndingLetsTheNextOneSteer) {
     request();
     feed::SteeringSeat other =
         feed::Steering::join(steered_->steering(), {.name = "bob", .right = feed::SteeringRight::kSteer});
-    other.request(feed::SteeringWish::kWait, now_);
+    other.request(feed::SteeringUrgency::kWait, now_);
     EXPECT_FALSE(other.renew(now_));
     session_.end();
     EXPECT_TRUE(other.renew(now_));

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBundleBytes = 5U << 19;
 
 Plane synthetic_plane(PlaneSemantic semantic, std::uint32_t width_px, std::uint32_t height_px, std::uint64_t seed) {
-    const PlaneFormat format = wire::wire_format(semantic);
+    const PlaneFormat format = usual_format(semantic);
     Plane plane{.semantic = semantic, .format = format, .width_px = width_px, .height_px = height_px, .bytes = {}};
     plane.bytes.resize(plane_bytes(format, width_px, height_px));
     for (std::size_t i = 0; i < plane.bytes.size(); ++i) {
@@ -38,10 +38,10 @@ FrameHeader synthetic_header(const feed::ChannelInfo& info, std::uint64_t frame_
 SourceFrame synthetic_source(const feed::ChannelInfo& info, const feed::Demand& demand, std::uint64_t frame_id) {
     SourceFrame source;
     source.header = synthetic_header(info, frame_id);
-    const Camera camera = with_guard_band(source.header.source, info.guard_band);
     for (const wire::PlaneChoice& choice : demand.planes) {
         if (source.find(choice.semantic) == nullptr) {
-            source.planes.push_back(synthetic_plane(choice.semantic, camera.width_px, camera.height_px, frame_id));
+            source.planes.push_back(synthetic_plane(choice.semantic, plane_width(source.header, choice.semantic),
+                                                    plane_height(source.header, choice.semantic), frame_id));
         }
     }
     return source;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/recording/form.h"
+#include "server/recording/recorded_form.h"
 #include "server/recording/recording_writer.h"
 #include "server_synthetic.h"
 
@@ -14,7 +14,7 @@ inline void write_synthetic_recording(const std::filesystem::path& file, const s
     feed::Demand demand;
     demand.needs_alone = true;
     for (const std::string& form : forms) {
-        info.recorded.push_back(recording::wish_of(*recording::parse_form(form), info));
+        info.recorded.push_back(recording::selection_of(*recording::parse_form(form), info));
         feed::add(demand, info.recorded.back());
     }
     WorkerPool pool(1);

@@ -31,13 +31,13 @@ protected:
     }
 
     static tl::expected<feed::Subscription, std::string> subscribe(const std::shared_ptr<Feed>& feed,
-                                                                   const feed::Wish& wish) {
-        return Feed::subscribe(feed, wish, [](const feed::FramePtr&) {});
+                                                                   const feed::Selection& selection) {
+        return Feed::subscribe(feed, selection, [](const feed::FramePtr&) {});
     }
 
-    static feed::Wish wish(const Feed& feed, std::uint32_t cols, std::uint32_t width_px = 64) {
+    static feed::Selection selection(const Feed& feed, std::uint32_t cols, std::uint32_t width_px = 64) {
         const feed::ChannelInfo& info = feed.info();
-        return feed::ViewsWish{.format = {.geometry = info.largest_grid.geometry,
+        return feed::ViewSelection{.format = {.geometry = info.largest_grid.geometry,
                                           .fovy_rad = info.fovy_rad,
                                           .width_px = width_px,
                                           .height_px = 36},
@@ -49,41 +49,41 @@ protected:
 };
 
 TEST_F(ViewMemoryTest, WhatDoesNotFitIsRefusedWithTheNumbers) {
-    auto small = subscribe(feed_, wish(*feed_, 3));
+    auto small = subscribe(feed_, selection(*feed_, 3));
     ASSERT_TRUE(small.has_value());
     EXPECT_EQ(memory_->used(), bytes_of(3));
     const auto other = make_feed();
-    const auto refused = subscribe(other, wish(*other, 3));
+    const auto refused = subscribe(other, selection(*other, 3));
     ASSERT_FALSE(refused.has_value()) << "all channels share the budget";
     EXPECT_THAT(refused.error(), HasSubstr(std::to_string(bytes_of(3)) + " bytes more"));
     EXPECT_THAT(refused.error(),
                 HasSubstr(std::to_string(bytes_of(3)) + " of " + std::to_string(bytes_of(6)) + " are in use"));
-    EXPECT_TRUE(small->change(wish(*feed_, 7)).has_value());
+    EXPECT_TRUE(small->change(selection(*feed_, 7)).has_value());
     EXPECT_EQ(memory_->used(), bytes_of(3)) << "refused: it keeps what it had";
-    EXPECT_FALSE(small->change(wish(*feed_, 6)).has_value());
-    EXPECT_TRUE(subscribe(feed_, wish(*feed_, 3)).has_value()) << "its views are there";
+    EXPECT_FALSE(small->change(selection(*feed_, 6)).has_value());
+    EXPECT_TRUE(subscribe(feed_, selection(*feed_, 3)).has_value()) << "its views are there";
     EXPECT_EQ(memory_->used(), bytes_of(6));
 }
 
 TEST_F(ViewMemoryTest, WhatIsLeftCountsUntilTheChannelHasForgottenIt) {
-    auto first = subscribe(feed_, wish(*feed_, 6));
+    auto first = subscribe(feed_, selection(*feed_, 6));
     ASSERT_TRUE(first.has_value());
     EXPECT_FALSE(feed_->surplus(std::chrono::steady_clock::now() + 1h).has_value());
     first->end();
     EXPECT_EQ(memory_->used(), bytes_of(6)) << "the channel still has it";
-    EXPECT_FALSE(subscribe(feed_, wish(*feed_, 3, 32)).has_value());
-    EXPECT_TRUE(subscribe(feed_, wish(*feed_, 6)).has_value()) << "the same views need no more";
+    EXPECT_FALSE(subscribe(feed_, selection(*feed_, 3, 32)).has_value());
+    EXPECT_TRUE(subscribe(feed_, selection(*feed_, 6)).has_value()) << "the same views need no more";
     EXPECT_FALSE(feed_->surplus(std::chrono::steady_clock::now()).has_value()) << "not at once";
     const auto kept = feed_->surplus(std::chrono::steady_clock::now() + Feed::kKeepViews);
     ASSERT_TRUE(kept.has_value());
     EXPECT_TRUE(kept->empty());
     feed_->forgot_all_but(*kept);
     EXPECT_EQ(memory_->used(), 0U);
-    EXPECT_TRUE(subscribe(feed_, wish(*feed_, 3, 32)).has_value());
+    EXPECT_TRUE(subscribe(feed_, selection(*feed_, 3, 32)).has_value());
 }
 
 TEST_F(ViewMemoryTest, TheChannelIsWokenToForget) {
-    auto first = subscribe(feed_, wish(*feed_, 6));
+    auto first = subscribe(feed_, selection(*feed_, 6));
     ASSERT_TRUE(first.has_value());
     first->end();
     EXPECT_TRUE(feed_->wait_for_demand({})) << "although nobody wants a frame";
@@ -93,7 +93,7 @@ TEST_F(ViewMemoryTest, TheChannelIsWokenToForget) {
 
 TEST_F(ViewMemoryTest, AFeedThatGoesGivesAllBack) {
     {
-        const auto subscription = subscribe(feed_, wish(*feed_, 6));
+        const auto subscription = subscribe(feed_, selection(*feed_, 6));
         ASSERT_TRUE(subscription.has_value());
         feed_.reset();
         EXPECT_EQ(memory_->used(), bytes_of(6));

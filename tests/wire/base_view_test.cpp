@@ -39,7 +39,7 @@ ViewFormat h264_format() {
             .fovy_rad = 0.7F,
             .width_px = 48,
             .height_px = 130,
-            .encoding = {codec::CodecId::kH264, 75}};
+            .encoding = {Codec::kH264, 75}};
 }
 
 /// Codings of a part's strips, from the top.

@@ -52,7 +52,7 @@ TEST(Chunks, SplitStripsAtTheChunkSize) {
     SourceFrame frame{test_header(1, 300, 120), {}};
     const Camera widened = with_guard_band(frame.header.source, frame.header.guard_band);
     frame.planes = {random_plane(PlaneFormat::kU32, widened.width_px, widened.height_px)};
-    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {codec::CodecId::kRaw}}};
+    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {Codec::kRaw}}};
     const WireFrame wire =
         source_chunks(encode_source(frame, choices, {}, pool), choices, {.chunk_bytes = kMinChunkBytes});
     std::uint64_t total = 0;
@@ -70,22 +70,22 @@ TEST(Chunks, SplitStripsAtTheChunkSize) {
 
 TEST(Chunks, ClientsChooseCodecsFromOneEncoding) {
     WorkerPool pool(1);
-    const std::vector<PlaneChoice> both{{PlaneSemantic::kDepth, {codec::CodecId::kRaw}},
-                                        {PlaneSemantic::kDepth, {codec::CodecId::kZstdFiltered}},
-                                        {PlaneSemantic::kDepth, {codec::CodecId::kRaw}}};
+    const std::vector<PlaneChoice> both{{PlaneSemantic::kDepth, {Codec::kRaw}},
+                                        {PlaneSemantic::kDepth, {Codec::kZstdFiltered}},
+                                        {PlaneSemantic::kDepth, {Codec::kRaw}}};
     const EncodedSource source = encode_source(test_source(1), both, {}, pool);
     EXPECT_EQ(source.planes.size(), 2U);
     const WireFrame raw = source_chunks(source, std::span(both).first(1), {});
     const WireFrame zstd = source_chunks(source, std::span(both).subspan(1, 1), {});
     EXPECT_LT(zstd.payload_bytes, raw.payload_bytes);
-    EXPECT_EQ(source.find({PlaneSemantic::kNormal, {codec::CodecId::kRaw}}), nullptr);
+    EXPECT_EQ(source.find({PlaneSemantic::kNormal, {Codec::kRaw}}), nullptr);
 }
 
-TEST(Chunks, UnencodedWishesAreOurBug) {
+TEST(Chunks, UnencodedSelectionsAreOurBug) {
     WorkerPool pool(1);
-    const std::vector<PlaneChoice> choices{{PlaneSemantic::kDepth, {codec::CodecId::kRaw}}};
+    const std::vector<PlaneChoice> choices{{PlaneSemantic::kDepth, {Codec::kRaw}}};
     const EncodedSource source = encode_source(test_source(1), choices, {}, pool);
-    const std::vector<PlaneChoice> other{{PlaneSemantic::kId, {codec::CodecId::kRaw}}};
+    const std::vector<PlaneChoice> other{{PlaneSemantic::kId, {Codec::kRaw}}};
     EXPECT_THROW(source_chunks(source, other, {}), std::logic_error);
     EXPECT_THROW(encode_source(SourceFrame{}, choices, {}, pool), std::logic_error);
 }

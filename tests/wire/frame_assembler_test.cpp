@@ -72,7 +72,7 @@ TEST_F(FrameAssemblerTest, LossyLightArrivesBesideLosslessPlanes) {
     Plane& light = sent.planes.front();
     light = light_plane(light.width_px, light.height_px);
     std::vector<PlaneChoice> choices = all_choices();
-    choices.front().encoding = {codec::CodecId::kJpeg, 90};
+    choices.front().encoding = {Codec::kJpeg, 90};
     const EncodedSource source = encode_source(sent, choices, {}, pool_);
     const auto& strip = *source.find(choices.front())->strips.front().best.bytes;
     const auto curve = codec::decode_curve(std::span(strip).subspan(codec::kStripHeaderBytes));
@@ -198,7 +198,7 @@ TEST_F(FrameAssemblerTest, DamagedPayloadFailsAndTheNextFrameIsFine) {
 }
 
 TEST_F(FrameAssemblerTest, RawDamageIsCaughtByTheCrc) {
-    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {codec::CodecId::kRaw}}};
+    const std::vector<PlaneChoice> choices{{PlaneSemantic::kId, {Codec::kRaw}}};
     const EncodedSource source = encode_source(test_source(1), choices, {}, pool_);
     auto chunks = all_chunks(source_chunks(source, choices, {.epoch = 3}));
     chunks[1].mutable_payload()->back() ^= 1;

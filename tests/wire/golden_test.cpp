@@ -54,7 +54,7 @@ TEST(GoldenStrips, Version1JpegDecodes) {
     Plane decoded = expected;
     std::fill_n(decoded.bytes.begin() + 3 * 99, 15 * 99, std::byte{0});
     const auto result =
-        decode_strip(read_bytes("tests/data/wire/v1/rgb8_jpeg.strip"), {3, 15}, {.codec = CodecId::kJpeg}, decoded);
+        decode_strip(read_bytes("tests/data/wire/v1/rgb8_jpeg.strip"), {3, 15}, {.codec = Codec::kJpeg}, decoded);
     ASSERT_TRUE(result) << result.error().message;
     int largest = 0;
     for (std::size_t i = 0; i < decoded.bytes.size(); ++i) {
@@ -70,7 +70,7 @@ TEST(GoldenStrips, Version1JpegOfLightDecodes) {
     Plane decoded = expected;
     std::fill_n(decoded.bytes.begin() + 3 * 132, 15 * 132, std::byte{0});
     const auto strip = read_bytes("tests/data/wire/v1/r11g11b10f_jpeg.strip");
-    const auto result = decode_strip(strip, {3, 15}, {.codec = CodecId::kJpeg}, decoded);
+    const auto result = decode_strip(strip, {3, 15}, {.codec = Codec::kJpeg}, decoded);
     ASSERT_TRUE(result) << result.error().message;
     int largest = 0;
     for (std::size_t i = 0; i < 33 * 20; ++i) {
@@ -107,7 +107,7 @@ protected:
 TEST_F(WorkedExample, RawStrip) {
     const auto expected = bytes_of(std::to_array<std::uint8_t>(
         {1, 1, 5, 0, 0, 0, 2, 0, 0, 0, 2, 0, 8, 0, 0, 0, 10, 200, 12, 201, 11, 200, 14, 203}));
-    EXPECT_EQ(encode_strip(plane_, {0, 2}, {.encoding = {CodecId::kRaw}}), expected);
+    EXPECT_EQ(encode_strip(plane_, {0, 2}, {.encoding = {Codec::kRaw}}), expected);
 }
 
 TEST_F(WorkedExample, FilteredBytes) {

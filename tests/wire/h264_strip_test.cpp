@@ -14,7 +14,7 @@ using namespace fieldcast::testing;
 using ::testing::HasSubstr;
 
 constexpr RowBand kBand{3, 15};
-constexpr Encoding kH264{CodecId::kH264, 75};
+constexpr Encoding kH264{Codec::kH264, 75};
 
 /// A soft picture: kRgb8, 33 × 20 pixels, moved to the left.
 Plane soft_plane(std::uint32_t offset_px = 0) {
@@ -56,10 +56,10 @@ TEST(H264Strip, StandsAloneOrIsPredicted) {
     EXPECT_FALSE(can_be_base(strip));
     EXPECT_FALSE(needs_reference(strip)) << "what is meant is another frame";
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
-    ASSERT_TRUE(decode_strip(base, kBand, {.codec = CodecId::kH264}, decoded));
+    ASSERT_TRUE(decode_strip(base, kBand, {.codec = Codec::kH264}, decoded));
     EXPECT_LE(largest_error(decoded, base_plane), 24); // a quantiser of 24 has steps of 10
     decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
-    ASSERT_TRUE(decode_strip(strip, kBand, {.codec = CodecId::kH264, .base = base}, decoded));
+    ASSERT_TRUE(decode_strip(strip, kBand, {.codec = Codec::kH264, .base = base}, decoded));
     EXPECT_LE(largest_error(decoded, plane), 24);
 }
 
@@ -67,32 +67,32 @@ TEST(H264Strip, IsRefusedWithoutItsBase) {
     const Plane base_plane = soft_plane();
     const auto base = encode_strip(base_plane, kBand, {.encoding = kH264});
     const auto strip = encode_strip(soft_plane(2), kBand, {.encoding = kH264, .base = &base_plane});
-    const auto raw = encode_strip(base_plane, kBand, {.encoding = {CodecId::kRaw}});
+    const auto raw = encode_strip(base_plane, kBand, {.encoding = {Codec::kRaw}});
     const auto other_rows = encode_strip(base_plane, {0, 15}, {.encoding = kH264});
-    const CodecId h264 = CodecId::kH264;
+    const Codec h264 = Codec::kH264;
     EXPECT_THAT(refusal(strip, {.codec = h264}), HasSubstr("has no such strip"));
     EXPECT_THAT(refusal(strip, {.codec = h264, .base = raw}), HasSubstr("has no such strip"));
     EXPECT_THAT(refusal(strip, {.codec = h264, .base = strip}), HasSubstr("has no such strip"));
     EXPECT_THAT(refusal(strip, {.codec = h264, .base = other_rows}), HasSubstr("has no such strip"));
-    EXPECT_THAT(refusal(strip, {.codec = CodecId::kJpeg, .base = base}), HasSubstr("plane of another codec"));
-    EXPECT_THAT(refusal(base, {.codec = CodecId::kZstdFiltered}), HasSubstr("plane of another codec"));
+    EXPECT_THAT(refusal(strip, {.codec = Codec::kJpeg, .base = base}), HasSubstr("plane of another codec"));
+    EXPECT_THAT(refusal(base, {.codec = Codec::kZstdFiltered}), HasSubstr("plane of another codec"));
     EXPECT_EQ(refusal(base, {.codec = h264, .base = raw}), "nothing") << "what stands alone needs no base";
 }
 
 TEST(H264Strip, DamagedHeadersAreRefused) {
     auto strip = encode_strip(soft_plane(), kBand, {.encoding = kH264});
     strip[5] = std::byte{2};
-    EXPECT_THAT(refusal(strip, {.codec = CodecId::kH264}), HasSubstr("flags"));
+    EXPECT_THAT(refusal(strip, {.codec = Codec::kH264}), HasSubstr("flags"));
     strip[5] = std::byte{0};
     strip[3] = std::byte{1};
-    EXPECT_THAT(refusal(strip, {.codec = CodecId::kH264}), HasSubstr("only ZSTD_FILTERED has a filter"));
+    EXPECT_THAT(refusal(strip, {.codec = Codec::kH264}), HasSubstr("only ZSTD_FILTERED has a filter"));
 }
 
 TEST(H264Strip, IsForPicturesOnly) {
     for (const PlaneFormat format : kAllFormats) {
-        EXPECT_EQ(fits(CodecId::kH264, format), format == PlaneFormat::kRgb8) << name_of(format);
+        EXPECT_EQ(carries(Codec::kH264, format), format == PlaneFormat::kRgb8) << name_of(format);
     }
-    EXPECT_TRUE(is_lossy(CodecId::kH264));
+    EXPECT_TRUE(is_lossy(Codec::kH264));
 }
 
 TEST(H264Strip, FallsBackToRawWhereItIsLarger) {
@@ -113,12 +113,12 @@ TEST(H264Strip, RepeatsWhatTheReceiverHas) {
 TEST(H264Strip, Version1Decodes) {
     const auto base = read_bytes("tests/data/wire/v1/rgb8_h264.strip");
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
-    const auto first = decode_strip(base, kBand, {.codec = CodecId::kH264}, decoded);
+    const auto first = decode_strip(base, kBand, {.codec = Codec::kH264}, decoded);
     ASSERT_TRUE(first) << first.error().message;
     EXPECT_LE(largest_error(decoded, soft_plane()), 24);
     decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
     const auto second = decode_strip(read_bytes("tests/data/wire/v1/rgb8_h264_predicted.strip"), kBand,
-                                     {.codec = CodecId::kH264, .base = base}, decoded);
+                                     {.codec = Codec::kH264, .base = base}, decoded);
     ASSERT_TRUE(second) << second.error().message;
     EXPECT_LE(largest_error(decoded, soft_plane(2)), 24);
 }

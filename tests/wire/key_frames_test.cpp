@@ -106,7 +106,7 @@ TEST_F(KeyFramesTest, ANewEpochForgetsTheKeyFrame) {
 }
 
 TEST_F(KeyFramesTest, TheKeyFrameMustHaveTheSamePlanes) {
-    const std::vector<PlaneChoice> one{{PlaneSemantic::kId, {codec::CodecId::kZstdFiltered}}};
+    const std::vector<PlaneChoice> one{{PlaneSemantic::kId, {Codec::kZstdFiltered}}};
     const EncodedSource key = encode_source(key_source_, one, {.frame_id = kKeyId}, pool_);
     ASSERT_TRUE(add_all(assembler_, all_chunks(source_chunks(key, one, {.epoch = 3}))));
     expect_refused(chunks_of(encode_near(6), true), "other planes");

@@ -11,7 +11,6 @@
 namespace {
 
 using namespace fieldcast;
-using codec::CodecId;
 
 using Bytes = std::vector<std::byte>;
 
@@ -31,14 +30,14 @@ void write_valid(const std::filesystem::path& folder) {
         const auto encode = [&](const codec::StripOptions& options) {
             return codec::encode_strip(plane, {3, 15}, options);
         };
-        write(folder / (name + "_raw.strip"), encode({.encoding = {CodecId::kRaw}}));
+        write(folder / (name + "_raw.strip"), encode({.encoding = {Codec::kRaw}}));
         write(folder / (name + "_zstd.strip"), encode({.filter = testing::first_filter(format)}));
         write(folder / (name + "_predicted.strip"), encode({}));
         write(folder / (name + "_reference.strip"), encode({.reference = &reference, .filter = temporal}));
         write(folder / (name + "_repeat.strip"), encode({.reference = &plane}));
     }
     const Plane picture = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
-    write(folder / "rgb8_jpeg.strip", codec::encode_strip(picture, {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
+    write(folder / "rgb8_jpeg.strip", codec::encode_strip(picture, {3, 15}, {.encoding = {Codec::kJpeg, 95}}));
     Plane soft = testing::empty_plane(PlaneFormat::kRgb8, 33, 20); // as in h264_strip_test.cpp
     Plane moved = soft;
     for (std::size_t i = 0; i < soft.bytes.size(); ++i) {
@@ -46,11 +45,11 @@ void write_valid(const std::filesystem::path& folder) {
         soft.bytes[i] = static_cast<std::byte>(4 * (pixel % 33) + 3 * (pixel / 33));
         moved.bytes[i] = static_cast<std::byte>(4 * (pixel % 33 + 2) + 3 * (pixel / 33));
     }
-    write(folder / "rgb8_h264.strip", codec::encode_strip(soft, {3, 15}, {.encoding = {CodecId::kH264, 75}}));
+    write(folder / "rgb8_h264.strip", codec::encode_strip(soft, {3, 15}, {.encoding = {Codec::kH264, 75}}));
     write(folder / "rgb8_h264_predicted.strip",
-          codec::encode_strip(moved, {3, 15}, {.encoding = {CodecId::kH264, 75}, .base = &soft}));
+          codec::encode_strip(moved, {3, 15}, {.encoding = {Codec::kH264, 75}, .base = &soft}));
     write(folder / "r11g11b10f_jpeg.strip",
-          codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {CodecId::kJpeg, 95}}));
+          codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {Codec::kJpeg, 95}}));
 }
 
 Bytes with_byte(Bytes strip, std::size_t at, std::uint8_t value) {
@@ -71,7 +70,7 @@ Bytes with_body(const Bytes& strip, std::span<const std::byte> body) {
 void write_malformed(const std::filesystem::path& folder) {
     const Plane plane = testing::ramp_plane(PlaneFormat::kRgb8, 33, 20);
     const Bytes zstd = codec::encode_strip(plane, {3, 15}, {.filter = testing::first_filter(plane.format)});
-    const Bytes raw = codec::encode_strip(plane, {3, 15}, {.encoding = {CodecId::kRaw}});
+    const Bytes raw = codec::encode_strip(plane, {3, 15}, {.encoding = {Codec::kRaw}});
     const Bytes repeat = codec::encode_strip(plane, {3, 15}, {.reference = &plane});
     const auto body = std::span(zstd).subspan(codec::kStripHeaderBytes);
     write(folder / "empty.strip", {});
@@ -93,11 +92,11 @@ void write_malformed(const std::filesystem::path& folder) {
     write(folder / "width.strip", with_byte(zstd, 6, 32));
     write(folder / "rows.strip", with_byte(zstd, 10, 16));
     write(folder / "raw_filter.strip", with_byte(raw, 3, 1));
-    const Bytes jpeg = codec::encode_strip(plane, {3, 15}, {.encoding = {CodecId::kJpeg, 95}});
+    const Bytes jpeg = codec::encode_strip(plane, {3, 15}, {.encoding = {Codec::kJpeg, 95}});
     write(folder / "jpeg_filter.strip", with_byte(jpeg, 3, 1));
     write(folder / "jpeg_cut.strip", with_body(jpeg, std::span(jpeg).subspan(16, jpeg.size() - 20)));
     write(folder / "jpeg_in_zstd_plane.strip", jpeg);
-    const Bytes light = codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {CodecId::kJpeg, 95}});
+    const Bytes light = codec::encode_strip(testing::light_plane(33, 20), {3, 15}, {.encoding = {Codec::kJpeg, 95}});
     write(folder / "light_no_curve.strip", with_body(light, std::span(light).subspan(16, 7)));
     write(folder / "light_no_picture.strip", with_body(light, std::span(light).subspan(16, 8)));
     write(folder / "light_negative_knee.strip", with_byte(light, 19, 0xBD));

@@ -18,7 +18,7 @@ constexpr RowBand kBand{3, 15};
 struct MalformedFile {
     const char* name;
     const char* error;
-    CodecId announced = CodecId::kZstdFiltered;
+    Codec announced = Codec::kZstdFiltered;
     PlaneFormat format = PlaneFormat::kRgb8;
 };
 
@@ -48,12 +48,12 @@ TEST(MalformedStrip, FilesGiveTheNamedError) {
         {"huge_content", "does not declare"},
         {"other_content", "does not declare"},
         {"jpeg_filter", "only ZSTD_FILTERED has a filter"},
-        {"jpeg_in_zstd_plane", "JPEG in a plane of another codec"},
-        {"jpeg_cut", "damaged", CodecId::kJpeg},
-        {"light_no_curve", "without its curve", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
-        {"light_no_picture", "JPEG", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
-        {"light_negative_knee", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
-        {"light_infinite_top", "knee or top", CodecId::kJpeg, PlaneFormat::kR11G11B10F},
+        {"jpeg_in_zstd_plane", "jpeg in a plane of another codec"},
+        {"jpeg_cut", "damaged", Codec::kJpeg},
+        {"light_no_curve", "without its curve", Codec::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_no_picture", "JPEG", Codec::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_negative_knee", "knee or top", Codec::kJpeg, PlaneFormat::kR11G11B10F},
+        {"light_infinite_top", "knee or top", Codec::kJpeg, PlaneFormat::kR11G11B10F},
     };
     for (const MalformedFile& file : files) {
         Plane plane = empty_plane(file.format, 33, 20);
@@ -76,7 +76,7 @@ TEST(MalformedStrip, RepetitionsHaveNoBytes) {
 TEST(MalformedStrip, EveryTruncationIsRefused) {
     for (const PlaneFormat format : kAllFormats) {
         const Plane plane = ramp_plane(format, 33, 20);
-        for (const CodecId codec : {CodecId::kRaw, CodecId::kZstdFiltered}) {
+        for (const Codec codec : {Codec::kRaw, Codec::kZstdFiltered}) {
             const auto strip = encode_strip(plane, kBand, {.encoding = {codec}});
             Plane decoded = empty_plane(format, 33, 20);
             for (std::size_t size = 0; size < strip.size(); ++size) {
@@ -89,7 +89,7 @@ TEST(MalformedStrip, EveryTruncationIsRefused) {
 
 TEST(MalformedStrip, RefusesRowsOutsideThePlane) {
     const Plane plane = ramp_plane(PlaneFormat::kRgb8, 33, 20);
-    const auto strip = encode_strip(plane, kBand, {.encoding = {CodecId::kRaw}});
+    const auto strip = encode_strip(plane, kBand, {.encoding = {Codec::kRaw}});
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 33, 20);
     for (const RowBand band : {RowBand{20, 1}, RowBand{6, 15}, RowBand{0, 0}, RowBand{0xFFFFFFFF, 2}}) {
         EXPECT_FALSE(decode_strip(strip, band, {}, decoded));

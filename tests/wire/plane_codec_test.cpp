@@ -12,12 +12,12 @@ namespace {
 
 using namespace fieldcast::testing;
 
-using Case = std::tuple<PlaneFormat, CodecId>;
+using Case = std::tuple<PlaneFormat, Codec>;
 
 class EveryCodec : public ::testing::TestWithParam<Case> {
 protected:
     PlaneFormat format() const { return std::get<0>(GetParam()); }
-    CodecId codec() const { return std::get<1>(GetParam()); }
+    Codec codec() const { return std::get<1>(GetParam()); }
 
     void expect_round_trip(const Plane& plane, const std::string& what) const {
         Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
@@ -74,12 +74,12 @@ TEST_P(EveryCodec, SameInputSameBytes) {
 }
 
 std::string case_name(const ::testing::TestParamInfo<Case>& info) {
-    return name_of(std::get<0>(info.param)) + (std::get<1>(info.param) == CodecId::kRaw ? "_raw" : "_zstd");
+    return name_of(std::get<0>(info.param)) + (std::get<1>(info.param) == Codec::kRaw ? "_raw" : "_zstd");
 }
 
 INSTANTIATE_TEST_SUITE_P(PlaneCodec, EveryCodec,
                          ::testing::Combine(::testing::ValuesIn(kAllFormats),
-                                            ::testing::Values(CodecId::kRaw, CodecId::kZstdFiltered)),
+                                            ::testing::Values(Codec::kRaw, Codec::kZstdFiltered)),
                          case_name);
 
 TEST(PlaneCodec, CompressesSmoothPlanes) {
@@ -95,13 +95,13 @@ TEST(PlaneCodec, FallsBackToRawForNoise) {
     const Plane plane = random_plane(PlaneFormat::kRgb8, 40, 40);
     const auto strip = encode_strip(plane, {0, 40}, {});
     EXPECT_EQ(strip.size(), max_strip_bytes(PlaneFormat::kRgb8, 40, 40));
-    EXPECT_EQ(strip[1], static_cast<std::byte>(CodecId::kRaw));
+    EXPECT_EQ(strip[1], static_cast<std::byte>(Codec::kRaw));
 }
 
 class Referring : public ::testing::TestWithParam<PlaneFormat> {
 protected:
     /// The coding of the strip, after a round trip.
-    static StripHeader encode(const Plane& plane, const Plane& reference, CodecId codec = CodecId::kZstdFiltered) {
+    static StripHeader encode(const Plane& plane, const Plane& reference, Codec codec = Codec::kZstdFiltered) {
         const RowBand band{0, plane.height_px};
         const auto strip = encode_strip(plane, band, {.encoding = {codec}, .reference = &reference});
         Plane decoded = empty_plane(plane.format, plane.width_px, plane.height_px);
@@ -120,7 +120,7 @@ protected:
 
 TEST_P(Referring, EqualRowsAreRepeated) {
     const Plane plane = random_plane(GetParam(), 40, 50);
-    for (const CodecId codec : {CodecId::kRaw, CodecId::kZstdFiltered}) {
+    for (const Codec codec : {Codec::kRaw, Codec::kZstdFiltered}) {
         const StripHeader header = encode(plane, plane, codec);
         EXPECT_EQ(header.coding, StripCoding::kRepeat);
         EXPECT_EQ(header.body_bytes, 0U);
@@ -152,34 +152,34 @@ INSTANTIATE_TEST_SUITE_P(PlaneCodec, Referring, ::testing::ValuesIn(kAllFormats)
 
 TEST(PlaneCodec, JpegFallsBackToRawWhereItIsLarger) {
     const Plane plane = random_plane(PlaneFormat::kRgb8, 4, 4); // 48 bytes; the tables of a JPEG alone are larger
-    const auto strip = encode_strip(plane, {0, 4}, {.encoding = {CodecId::kJpeg, 75}});
+    const auto strip = encode_strip(plane, {0, 4}, {.encoding = {Codec::kJpeg, 75}});
     EXPECT_EQ(strip[1], static_cast<std::byte>(StripCoding::kRaw));
     Plane decoded = empty_plane(PlaneFormat::kRgb8, 4, 4);
-    ASSERT_TRUE(decode_strip(strip, {0, 4}, {.codec = CodecId::kJpeg}, decoded));
+    ASSERT_TRUE(decode_strip(strip, {0, 4}, {.codec = Codec::kJpeg}, decoded));
     EXPECT_TRUE(decoded == plane);
 }
 
 TEST(PlaneCodec, JpegRepeatsWhatTheReceiverHas) {
     const Plane sent = ramp_plane(PlaneFormat::kRgb8, 64, 48);
     const RowBand band{0, 48};
-    const auto first = encode_strip(sent, band, {.encoding = {CodecId::kJpeg, 75}});
+    const auto first = encode_strip(sent, band, {.encoding = {Codec::kJpeg, 75}});
     EXPECT_EQ(first[1], static_cast<std::byte>(StripCoding::kJpeg));
     Plane received = empty_plane(PlaneFormat::kRgb8, 64, 48);
-    ASSERT_TRUE(decode_strip(first, band, {.codec = CodecId::kJpeg}, received));
-    const auto second = encode_strip(sent, band, {.encoding = {CodecId::kJpeg, 75}, .reference = &sent});
+    ASSERT_TRUE(decode_strip(first, band, {.codec = Codec::kJpeg}, received));
+    const auto second = encode_strip(sent, band, {.encoding = {Codec::kJpeg, 75}, .reference = &sent});
     EXPECT_EQ(second.size(), kStripHeaderBytes);
     Plane again = empty_plane(PlaneFormat::kRgb8, 64, 48);
-    ASSERT_TRUE(decode_strip(second, band, {.codec = CodecId::kJpeg, .reference = &received}, again));
+    ASSERT_TRUE(decode_strip(second, band, {.codec = Codec::kJpeg, .reference = &received}, again));
     EXPECT_TRUE(again == received);
 }
 
 TEST(PlaneCodec, JpegTakesLight) {
     const Plane plane = light_plane(96, 48);
-    const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = 2.0F});
+    const auto strip = encode_strip(plane, {0, 48}, {.encoding = {Codec::kJpeg, 90}, .exposure = 2.0F});
     EXPECT_EQ(strip[1], static_cast<std::byte>(StripCoding::kJpeg));
     EXPECT_LT(strip.size(), plane.bytes.size() / 4);
     Plane decoded = empty_plane(plane.format, 96, 48);
-    const auto result = decode_strip(strip, {0, 48}, {.codec = CodecId::kJpeg}, decoded);
+    const auto result = decode_strip(strip, {0, 48}, {.codec = Codec::kJpeg}, decoded);
     ASSERT_TRUE(result) << result.error().message;
     double error = 0.0;
     for (std::size_t i = 0; i < 96 * 48; ++i) {
@@ -193,7 +193,7 @@ TEST(PlaneCodec, JpegTakesLight) {
 TEST(PlaneCodec, BrighterExposureSpendsMoreOnDarkLight) {
     const Plane plane = light_plane(96, 48);
     const auto knee = [&](float exposure) {
-        const auto strip = encode_strip(plane, {0, 48}, {.encoding = {CodecId::kJpeg, 90}, .exposure = exposure});
+        const auto strip = encode_strip(plane, {0, 48}, {.encoding = {Codec::kJpeg, 90}, .exposure = exposure});
         return decode_curve(std::span(strip).subspan(kStripHeaderBytes))->knee;
     };
     EXPECT_FLOAT_EQ(knee(1.0F) / knee(8.0F), 8.0F);
@@ -202,8 +202,8 @@ TEST(PlaneCodec, BrighterExposureSpendsMoreOnDarkLight) {
 TEST(PlaneCodec, JpegIsForPicturesAndLight) {
     for (const PlaneFormat format : kAllFormats) {
         const bool is_picture = format == PlaneFormat::kRgb8 || format == PlaneFormat::kR11G11B10F;
-        EXPECT_EQ(fits(CodecId::kJpeg, format), is_picture) << name_of(format);
-        EXPECT_TRUE(fits(CodecId::kZstdFiltered, format) && fits(CodecId::kRaw, format));
+        EXPECT_EQ(carries(Codec::kJpeg, format), is_picture) << name_of(format);
+        EXPECT_TRUE(carries(Codec::kZstdFiltered, format) && carries(Codec::kRaw, format));
     }
 }
 
@@ -228,12 +228,12 @@ TEST(PlaneCodec, RefusesToAllocateOversizedPlanes) {
 }
 
 TEST(PlaneCodec, KnowsItsNumbers) {
-    EXPECT_EQ(codec_from_number(1), CodecId::kRaw);
-    EXPECT_EQ(codec_from_number(2), CodecId::kZstdFiltered);
-    EXPECT_EQ(codec_from_number(3), CodecId::kJpeg);
-    EXPECT_EQ(codec_from_number(4), CodecId::kH264);
+    EXPECT_EQ(from_number<Codec>(1), Codec::kRaw);
+    EXPECT_EQ(from_number<Codec>(2), Codec::kZstdFiltered);
+    EXPECT_EQ(from_number<Codec>(3), Codec::kJpeg);
+    EXPECT_EQ(from_number<Codec>(4), Codec::kH264);
     for (const std::uint64_t number : {0ULL, 5ULL, 255ULL, 257ULL, 1ULL << 40}) {
-        EXPECT_FALSE(codec_from_number(number)) << number;
+        EXPECT_FALSE(from_number<Codec>(number)) << number;
     }
 }
 

@@ -26,7 +26,7 @@ FrameHeader residual_header(std::uint64_t frame_id, std::vector<std::uint32_t> t
 
 Plane plane_for(const FrameHeader& header, PlaneSemantic semantic, std::uint32_t seed) {
     Plane plane =
-        ramp_plane(wire_format(semantic), plane_width(header, semantic), plane_height(header, semantic), seed);
+        ramp_plane(usual_format(semantic), plane_width(header, semantic), plane_height(header, semantic), seed);
     plane.semantic = semantic;
     return plane;
 }

@@ -49,7 +49,7 @@ inline SourceFrame test_source(std::uint64_t frame_id) {
 inline std::vector<wire::PlaneChoice> all_choices() {
     std::vector<wire::PlaneChoice> choices;
     for (const PlaneFormat format : kUsualFormats) {
-        choices.push_back({semantic_of(format), {codec::CodecId::kZstdFiltered}});
+        choices.push_back({semantic_of(format), {Codec::kZstdFiltered}});
     }
     return choices;
 }

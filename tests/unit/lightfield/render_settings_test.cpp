@@ -17,7 +17,7 @@ TEST(HoleFilling, IsReadFromWords) {
 }
 
 TEST(Presets, DifferInWhatTheyAreNamedFor) {
-    const auto ours = find_preset("ours", 6, 6);
+    const auto ours = find_preset("default", 6, 6);
     const auto svgf = find_preset("svgf", 6, 6);
     const auto bmfr = find_preset("bmfr", 6, 6);
     const auto reprojected = find_preset("reprojected", 6, 6);
@@ -38,24 +38,24 @@ TEST(Presets, DifferInWhatTheyAreNamedFor) {
 }
 
 TEST(Presets, AreChangedByWords) {
-    const auto changed = find_preset("ours/sobol/no-reflections", 6, 6);
+    const auto changed = find_preset("default/sobol/no-reflections", 6, 6);
     ASSERT_TRUE(changed);
-    RenderSettings expected = find_preset("ours", 6, 6)->settings;
+    RenderSettings expected = find_preset("default", 6, 6)->settings;
     EXPECT_EQ(expected.sampler, Sampler::kZSobol);
     EXPECT_TRUE(expected.reflections);
     expected.sampler = Sampler::kSobol;
     expected.reflections = false;
     EXPECT_TRUE(changed->settings == expected && changed->has_guard_band);
-    EXPECT_FALSE(find_preset("ours/no-guard-band", 6, 6)->has_guard_band);
-    EXPECT_EQ(find_preset("ours/traced-holes", 6, 6)->settings.holes, HoleFilling::path_traced());
-    EXPECT_EQ(find_preset("ours/no-candidates", 6, 6)->settings.light_sampling, LightSampling::plain());
-    EXPECT_TRUE(find_preset("ours", 6, 6)->settings.light_sampling.each_kind);
-    EXPECT_EQ(find_preset("ours/one-light-sample", 6, 6)->settings.light_sampling, (LightSampling{4, false}));
-    EXPECT_TRUE(find_preset("ours", 6, 6)->settings.history_light);
-    EXPECT_FALSE(find_preset("ours/no-history-light", 6, 6)->settings.history_light);
+    EXPECT_FALSE(find_preset("default/no-guard-band", 6, 6)->has_guard_band);
+    EXPECT_EQ(find_preset("default/traced-holes", 6, 6)->settings.holes, HoleFilling::path_traced());
+    EXPECT_EQ(find_preset("default/no-candidates", 6, 6)->settings.light_sampling, LightSampling::plain());
+    EXPECT_TRUE(find_preset("default", 6, 6)->settings.light_sampling.each_kind);
+    EXPECT_EQ(find_preset("default/one-light-sample", 6, 6)->settings.light_sampling, (LightSampling{4, false}));
+    EXPECT_TRUE(find_preset("default", 6, 6)->settings.history_light);
+    EXPECT_FALSE(find_preset("default/no-history-light", 6, 6)->settings.history_light);
     EXPECT_FALSE(find_preset("paper", 6, 6)->settings.history_light);
     EXPECT_EQ(find_preset("svgf/z-sobol", 6, 6)->settings.sampler, Sampler::kZSobol);
-    EXPECT_FALSE(find_preset("ours/better", 6, 6));
+    EXPECT_FALSE(find_preset("default/better", 6, 6));
 }
 
 TEST(Presets, OfThePaperAreSvgfButForTheirRoute) {
@@ -63,19 +63,19 @@ TEST(Presets, OfThePaperAreSvgfButForTheirRoute) {
     RenderSettings paper = find_preset("paper", 6, 6)->settings;
     RenderSettings red = find_preset("paper-red", 6, 6)->settings;
     EXPECT_TRUE(paper.accumulate_views);
-    EXPECT_EQ(red.route, Route::kRed);
+    EXPECT_EQ(red.denoised_images, DenoisedImages::kViews);
     EXPECT_FALSE(find_preset("paper", 6, 6)->has_guard_band);
     paper.accumulate_views = false;
-    red.route = Route::kGreen;
+    red.denoised_images = DenoisedImages::kSource;
     EXPECT_EQ(paper, svgf);
     EXPECT_EQ(red, svgf);
 }
 
 TEST(Presets, RedIsOursButForItsRoute) {
-    RenderSettings red = find_preset("red", 6, 6)->settings;
-    EXPECT_EQ(red.route, Route::kRed);
-    red.route = Route::kGreen;
-    EXPECT_EQ(red, find_preset("ours", 6, 6)->settings);
+    RenderSettings red = find_preset("denoised-views", 6, 6)->settings;
+    EXPECT_EQ(red.denoised_images, DenoisedImages::kViews);
+    red.denoised_images = DenoisedImages::kSource;
+    EXPECT_EQ(red, find_preset("default", 6, 6)->settings);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/feed/wish.h"
+#include "server/feed/selection.h"
 
 #include <algorithm>
 #include <set>
@@ -8,20 +8,20 @@ namespace fieldcast::feed {
 
 namespace {
 
-void add(Demand& demand, const PlanesWish& wish) {
-    for (const wire::PlaneChoice& choice : wish.choices) {
+void add(Demand& demand, const PlaneSelection& selection) {
+    for (const wire::PlaneChoice& choice : selection.choices) {
         if (std::ranges::find(demand.planes, choice) == demand.planes.end()) {
             demand.planes.push_back(choice);
         }
     }
 }
 
-void add(Demand& demand, const ViewsWish& wish) {
-    auto views = std::ranges::find(demand.views, wish.format, &ViewDemand::format);
+void add(Demand& demand, const ViewSelection& selection) {
+    auto views = std::ranges::find(demand.views, selection.format, &ViewDemand::format);
     if (views == demand.views.end()) {
-        views = demand.views.insert(views, ViewDemand{.format = wish.format, .positions = {}});
+        views = demand.views.insert(views, ViewDemand{.format = selection.format, .positions = {}});
     }
-    const std::vector<LatticePosition> wanted = lattice_positions(wish.grid);
+    const std::vector<LatticePosition> wanted = lattice_positions(selection.grid);
     demand.asked_views += wanted.size();
     views->positions.insert(views->positions.end(), wanted.begin(), wanted.end());
     std::ranges::sort(views->positions);
@@ -31,8 +31,8 @@ void add(Demand& demand, const ViewsWish& wish) {
 
 } // namespace
 
-void add(Demand& demand, const Wish& wish) {
-    std::visit([&](const auto& kind) { add(demand, kind); }, wish);
+void add(Demand& demand, const Selection& selection) {
+    std::visit([&](const auto& kind) { add(demand, kind); }, selection);
 }
 
 void add(Demand& demand, KeyNeed need) {
@@ -40,17 +40,17 @@ void add(Demand& demand, KeyNeed need) {
     demand.needs_key = demand.needs_key || need == KeyNeed::kKey;
 }
 
-bool covers(const std::vector<Wish>& wishes, const Wish& wish) {
+bool covers(const std::vector<Selection>& selections, const Selection& selection) {
     Demand together;
-    for (const Wish& one : wishes) {
+    for (const Selection& one : selections) {
         add(together, one);
     }
-    if (const auto* planes = std::get_if<PlanesWish>(&wish)) {
+    if (const auto* planes = std::get_if<PlaneSelection>(&selection)) {
         return std::ranges::all_of(planes->choices, [&](const wire::PlaneChoice& choice) {
             return std::ranges::find(together.planes, choice) != together.planes.end();
         });
     }
-    const auto& views = std::get<ViewsWish>(wish);
+    const auto& views = std::get<ViewSelection>(selection);
     const auto same = std::ranges::find(together.views, views.format, &ViewDemand::format);
     return same != together.views.end() &&
            std::ranges::all_of(lattice_positions(views.grid), [&](LatticePosition position) {

@@ -12,22 +12,22 @@
 namespace fieldcast::feed {
 
 /// Source planes, for a client that has the scene.
-struct PlanesWish {
+struct PlaneSelection {
     std::vector<wire::PlaneChoice> choices;
 
-    bool operator==(const PlanesWish&) const = default;
+    bool operator==(const PlaneSelection&) const = default;
 };
 
 /// Finished views. `grid.geometry` is that of `format`.
-struct ViewsWish {
+struct ViewSelection {
     wire::ViewFormat format;
     ViewGrid grid;
 
-    bool operator==(const ViewsWish&) const = default;
+    bool operator==(const ViewSelection&) const = default;
 };
 
 /// What one client wants of every frame.
-using Wish = std::variant<PlanesWish, ViewsWish>;
+using Selection = std::variant<PlaneSelection, ViewSelection>;
 
 /// What a client without the key frame that strips refer to asks for.
 enum class KeyNeed : std::uint8_t {
@@ -42,11 +42,11 @@ struct ViewDemand {
     std::vector<LatticePosition> positions; ///< sorted, each once
 };
 
-/// The union of wishes: what the next frame has to contain.
+/// The union of selections: what the next frame has to contain.
 struct Demand {
     std::vector<wire::PlaneChoice> planes; ///< each once
     std::vector<ViewDemand> views;         ///< each format once
-    std::uint64_t asked_views = 0;         ///< over all wishes, also those that several have in common
+    std::uint64_t asked_views = 0;         ///< over all selections, also those that several have in common
     bool needs_alone = false;              ///< somebody lacks the key frame
     bool needs_key = false;                ///< and would keep one
     bool is_awaited = false; ///< somebody wants a frame soon: until then the source goes on, for the sake of its history
@@ -57,15 +57,15 @@ struct Demand {
     std::uint64_t repeated_planes() const; ///< encodings of planes beyond the first one of each plane
 };
 
-/// Widens `demand` so that it covers `wish`.
-void add(Demand& demand, const Wish& wish);
+/// Widens `demand` so that it covers `selection`.
+void add(Demand& demand, const Selection& selection);
 void add(Demand& demand, KeyNeed need);
 
-/// Whether a client that gets everything in `wishes` has everything in `wish`.
-bool covers(const std::vector<Wish>& wishes, const Wish& wish);
+/// Whether a client that gets everything in `selections` has everything in `selection`.
+bool covers(const std::vector<Selection>& selections, const Selection& selection);
 
 /// For people: "views 3x3 of 160x90 zstd", "planes diffuse jpeg 75, specular jpeg 75".
-std::string to_text(const Wish& wish);
+std::string to_text(const Selection& selection);
 
 /// The word of flags and texts: "raw", "zstd", "jpeg 75".
 std::string to_text(const codec::Encoding& encoding);
