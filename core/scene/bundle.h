@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/load_options.h"
+#include "core/scene/scene.h"
 
 #include <cstddef>
 #include <span>

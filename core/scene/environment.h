@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_loader.h"
+#include "core/scene/load_options.h"
+#include "core/scene/scene.h"
 
 namespace fieldcast::scene {
 

@@ -103,8 +103,9 @@ struct Place {
 
 class RoomFinder {
 public:
-    RoomFinder(const RayProbe& probe, const Box& box)
-        : probe_(probe), box_(box), longest_(glm::length(box.size())) {}
+    /// `has_light`: inside, apart from what comes in.
+    RoomFinder(const RayProbe& probe, const Box& box, bool has_light)
+        : probe_(probe), box_(box), longest_(glm::length(box.size())), has_light_(has_light) {}
 
     /// The place from which one sees farthest; nothing if the scene is no room.
     std::optional<Place> best() const {
@@ -150,7 +151,8 @@ private:
             }
         }
         constexpr float kClearance = 0.01F; // of the scene: not in a wall or a shelf
-        return static_cast<float>(hits) >= kEnclosed * kProbeRays &&
+        const bool is_dark = hits == kProbeRays && !has_light_; // a closed box
+        return !is_dark && static_cast<float>(hits) >= kEnclosed * kProbeRays &&
                static_cast<float>(fronts) >= kFromWithin * static_cast<float>(hits) && nearest >= kClearance * longest_;
     }
 
@@ -180,7 +182,14 @@ private:
     const RayProbe& probe_;
     const Box box_;
     const float longest_;
+    const bool has_light_;
 };
+
+bool has_light(const Scene& scene) {
+    return !scene.lights.empty() || std::ranges::any_of(scene.materials, [](const Material& material) {
+        return glm::any(glm::greaterThan(material.emissive_factor, glm::vec3(0.0F)));
+    });
+}
 
 float half_width(float fovy_rad, float aspect) {
     return std::tan(0.5F * fovy_rad) * aspect;
@@ -219,7 +228,7 @@ Framing find_framing(const Scene& scene, const RayProbe& probe, const FramingOpt
     const Box box = bounds_of(scene, pose_scene(scene, 0));
     Framing framing = object_framing(box, options, aspect);
     const bool is_open = !options.look_from && !options.look_at && !options.orbit_s;
-    if (const auto place = is_open ? RoomFinder(probe, box).best() : std::nullopt) {
+    if (const auto place = is_open ? RoomFinder(probe, box, has_light(scene)).best() : std::nullopt) {
         framing = {.from = place->eye,
                    .at = place->eye + place->free_m * place->direction,
                    .fovy_rad = options.fovy_rad.value_or(kRoomFovy),

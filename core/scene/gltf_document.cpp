@@ -35,6 +35,8 @@ public:
         document_.name = files_.files().main;
         if (options.environment) {
             files_.read_environment(*options.environment);
+        } else if (options.surroundings == Surroundings::kStudio) {
+            files_.add_studio();
         }
     }
 

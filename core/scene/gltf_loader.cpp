@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/scene/bundle.h"
 #include "core/scene/environment.h"
+#include "core/scene/studio.h"
 #include "core/scene/gltf_animations.h"
 #include "core/scene/gltf_images.h"
 #include "core/scene/gltf_lights.h"
@@ -26,6 +27,28 @@ double longest_animation_s(const std::vector<AnimationChannel>& channels) {
     return duration_s;
 }
 
+/// Whether nothing in the file gives light.
+bool is_unlit(const Scene& scene) {
+    return scene.lights.empty() && std::ranges::none_of(scene.materials, [](const Material& material) {
+               return glm::any(glm::greaterThan(material.emissive_factor, glm::vec3(0.0F)));
+           });
+}
+
+bool wants_studio(const Scene& scene, const LoadOptions& options) {
+    if (options.environment) {
+        return false;
+    }
+    switch (options.surroundings) {
+    case Surroundings::kSky:
+        return false;
+    case Surroundings::kStudio:
+        return true;
+    case Surroundings::kStudioIfUnlit:
+        return is_unlit(scene);
+    }
+    return false;
+}
+
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     GltfDocument document = read_gltf_document(file, options);
     GltfBufferViews views(document, options.limits.max_file_bytes);
@@ -44,11 +67,17 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     scene.meshes = std::move(meshes.meshes);
     scene.instances = std::move(meshes.instances);
     check_extent(scene);
-    scene.environment = read_environment(options);
     scene.images = decode_images(document, views, options.limits, surfaces.textures);
     scene.textures = std::move(surfaces.textures);
     scene.materials = std::move(surfaces.materials);
     scene.warnings = document.warnings.lines();
+    scene.has_studio = wants_studio(scene, options);
+    if (scene.has_studio) {
+        add_studio(document.files);
+        scene.environment = studio_environment();
+    } else {
+        scene.environment = read_environment(options);
+    }
     scene.hash = hash_files(document.files, options);
     return scene;
 }

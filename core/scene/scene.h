@@ -151,6 +151,7 @@ struct Scene {
     std::vector<AnimationChannel> channels;
     double duration_s = 0.0; ///< of the longest animation; 0: nothing moves
     Environment environment;
+    bool has_studio = false; ///< `environment` is the studio (core/scene/studio.h)
     SceneHash hash{};
     std::vector<std::string> warnings; ///< one per kind and file ("skins are ignored (3 nodes)")
 };

@@ -2,6 +2,7 @@
 #include "core/scene/scene_files.h"
 
 #include "core/scene/load_report.h"
+#include "core/scene/studio.h"
 #include "core/scene/uri.h"
 
 #include <algorithm>
@@ -59,6 +60,11 @@ std::span<const std::byte> SceneFileReader::read_uri(const std::string& uri, con
     }
     add(*path, file, object);
     return files_.bytes.at(*path);
+}
+
+void add_studio(SceneFiles& files) {
+    files.environment = std::string(kEnvironmentStem) + std::string(kStudioExtension);
+    files.bytes.insert_or_assign(files.environment, studio_file());
 }
 
 void SceneFileReader::read_environment(const fs::path& file) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_loader.h"
+#include "core/scene/load_options.h"
+#include "core/scene/scene.h"
 
 #include <cstddef>
 #include <map>
@@ -28,6 +29,9 @@ struct SceneFiles {
 /// Hash of the bundle that these files make, without making it.
 SceneHash hash_files(const SceneFiles& files, const LoadOptions& options);
 
+/// Adds the studio (core/scene/studio.h) as the environment image; twice is once.
+void add_studio(SceneFiles& files);
+
 /// Reads files into a SceneFiles; refuses what leaves the folder or is larger than all files together may be.
 class SceneFileReader {
 public:
@@ -38,6 +42,8 @@ public:
     std::span<const std::byte> read_uri(const std::string& uri, const std::string& object);
     /// Reads the environment image, which may lie outside the folder.
     void read_environment(const std::filesystem::path& file);
+    /// Adds the studio (core/scene/studio.h) as the environment image.
+    void add_studio() { scene::add_studio(files_); }
 
     const SceneFiles& files() const { return files_; }
     SceneFiles take() { return std::move(files_); }

@@ -43,10 +43,15 @@ void FrameRenderer::load(const ops::ChannelChoice& channel) {
     scene::LoadOptions options;
     options.environment = config_.environment;
     options.sky = config_.sky.value_or(options.sky);
+    options.surroundings = config_.surroundings;
     scene::Scene scene = scene::load_scene(channel.scene, options);
     for (const std::string& warning : scene.warnings) {
         log::warn("scene", {{"channel", info_.name}, {"warning", warning}});
     }
+    if (scene.has_studio) {
+        log::info("lit by the studio", {{"channel", info_.name}, {"change", "--environment sky, none or FILE"}});
+    }
+    options.surroundings = scene.has_studio ? scene::Surroundings::kStudio : scene::Surroundings::kSky;
     const Viewpoint viewpoint = settle_viewpoint(scene, config_, info_.name);
     scene_ = std::make_shared<const scene::Scene>(std::move(scene));
     camera_node_ = &scene_->cameras[viewpoint.camera];

@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "core/lightfield/camera.h"
 #include "core/scene/framing.h"
+#include "core/scene/load_options.h"
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
 #include "server/feed/channel_info.h"
@@ -47,7 +48,8 @@ struct Config {
     std::vector<recording::ReplaySetup> replays; ///< channels that show a recording
 
     // Scenes, the same for all channels.
-    std::optional<std::filesystem::path> environment;
+    std::optional<std::filesystem::path> environment; ///< an image; unset: `surroundings`
+    scene::Surroundings surroundings = scene::Surroundings::kStudioIfUnlit;
     std::optional<glm::vec3> sky; ///< linear radiance; unset: the loader's default
     std::string camera;           ///< name or number of a camera node; empty: "LightField", else the first, else "auto"
     scene::FramingOptions framing; ///< of the camera "auto"

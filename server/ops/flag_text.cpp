@@ -163,6 +163,20 @@ std::optional<glm::vec3> read_point(const char* flag, const std::string& text, P
     return glm::vec3(point[0], point[1], point[2]);
 }
 
+/// After read_sky().
+void read_environment(const FlagText& text, Config& config) {
+    if (text.environment == "studio") {
+        config.surroundings = scene::Surroundings::kStudio;
+    } else if (text.environment == "sky" || text.environment == "none" || (text.environment.empty() && config.sky)) {
+        config.surroundings = scene::Surroundings::kSky;
+    } else if (!text.environment.empty()) {
+        config.environment = text.environment;
+    }
+    if (text.environment == "none") {
+        config.sky = glm::vec3(0.0F);
+    }
+}
+
 void read_framing(const FlagText& text, Config& config, Problems& problems) {
     config.framing.look_from = read_point("--look-from", text.look_from, problems);
     config.framing.look_at = read_point("--look-at", text.look_at, problems);
@@ -255,9 +269,7 @@ void read_text(const FlagText& text, Config& config, Problems& problems) {
     read_listen(text, config, problems);
     read_security(text, config, problems);
     read_recordings(text.recording, config, problems);
-    if (!text.environment.empty()) {
-        config.environment = text.environment;
-    }
+    read_environment(text, config);
     if (!text.port_file.empty()) {
         config.port_file = text.port_file;
     }

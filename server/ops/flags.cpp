@@ -39,7 +39,10 @@ void add_scene_flags(CLI::App& app, FlagText& text, Config& config) {
     app.add_option("--scene", text.scenes, "A .gltf or .glb file; its channel is named after it. May be repeated")
         ->group("Scene");
     app.add_option("--channel", text.channels, "NAME=FILE: a channel of that name. May be repeated")->group("Scene");
-    app.add_option("--environment", text.environment, "Equirectangular .hdr or .exr for all channels")->group("Scene");
+    app.add_option("--environment", text.environment,
+                   "Light from around, for all channels: an equirectangular .hdr or .exr, studio, sky (--sky) or none. "
+                   "Default: the studio for files without any light, else the sky")
+        ->group("Scene");
     app.add_option("--sky", text.sky, "R,G,B: linear radiance of the sky without an environment")->group("Scene");
     app.add_option("--camera", config.camera,
                    "Camera of the file, by name or number, or auto: frames the scene by itself. Default: LightField, else "

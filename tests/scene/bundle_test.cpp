@@ -66,6 +66,22 @@ TEST_F(BundleTest, RoundTripKeepsFilesOptionsAndHash) {
     EXPECT_EQ(make_bundle(unpacked->file, unpacked->options), bundle);
 }
 
+/// What is computed here is what a client decodes from the bundle, bit for bit.
+TEST_F(BundleTest, TheStudioTravels) {
+    const LoadOptions in_studio{.environment = {}, .surroundings = Surroundings::kStudio, .limits = {}};
+    const Scene scene = load_scene(main_, in_studio);
+    EXPECT_TRUE(scene.has_studio);
+    const std::vector<std::byte> bundle = make_bundle(main_, in_studio);
+    EXPECT_EQ(hash_bundle(bundle), scene.hash);
+    const auto unpacked = unpack_bundle(bundle, folder_.path() / "out");
+    ASSERT_TRUE(unpacked) << unpacked.error().message;
+    const Scene again = load_scene(unpacked->file, unpacked->options);
+    EXPECT_EQ(again.hash, scene.hash);
+    EXPECT_EQ(again.environment.constant, scene.environment.constant);
+    EXPECT_EQ(again.environment.width_px, scene.environment.width_px);
+    EXPECT_EQ(again.environment.pixels, scene.environment.pixels);
+}
+
 TEST_F(BundleTest, HashDependsOnContentNotOnPlace) {
     const TempFolder elsewhere;
     const fs::path copy = write_scene(elsewhere);

@@ -17,6 +17,23 @@ TEST(Environment, IsAConstantSkyByDefault) {
     EXPECT_TRUE(environment.pixels.empty());
 }
 
+TEST(Environment, IsTheStudioWhereNothingGivesLight) {
+    const LoadOptions options{.environment = {}, .surroundings = Surroundings::kStudioIfUnlit, .limits = {}};
+    GltfBuilder unlit;
+    unlit.add_triangle();
+    const Scene scene = unlit.load(options);
+    EXPECT_TRUE(scene.has_studio);
+    ASSERT_FALSE(scene.environment.pixels.empty());
+    const auto [darkest, brightest] = std::ranges::minmax(scene.environment.pixels, {}, &glm::vec3::x);
+    EXPECT_GT(darkest.x, 0.0F) << "no black holes in mirrors";
+    EXPECT_GT(brightest.x, 20.0F * darkest.x) << "there are lights in it";
+    GltfBuilder glowing;
+    glowing.add_triangle();
+    glowing.json["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};
+    EXPECT_FALSE(glowing.load(options).has_studio);
+    EXPECT_FALSE(glowing.load(options).environment.constant == glm::vec3(0.0F));
+}
+
 TEST(Environment, ReadsAnImageFromAnyFolder) {
     const TempFolder folder;
     image::write_exr(folder.path() / "sky.exr", image::RgbF32{2, 1, {glm::vec3(0.25F), glm::vec3(900, 0, 1)}});

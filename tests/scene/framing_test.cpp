@@ -38,6 +38,13 @@ Scene scene_of(std::vector<Mesh> meshes) {
     return scene;
 }
 
+/// A room with a lamp.
+Scene room_of(const Mesh& mesh) {
+    Scene scene = scene_of({mesh});
+    scene.lights.emplace_back();
+    return scene;
+}
+
 Framing framing_of(const Scene& scene, const FramingOptions& options = {}) {
     return find_framing(scene, RayProbe(scene, pose_scene(scene, 0)), options, kAspect);
 }
@@ -71,7 +78,7 @@ TEST(Framing, ShowsAWholeObjectWhateverItsSize) {
 }
 
 TEST(Framing, StandsInsideARoomAndLooksAlongIt) {
-    const Scene scene = scene_of({box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true)});
+    const Scene scene = room_of(box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true));
     const Framing framing = framing_of(scene);
     ASSERT_TRUE(framing.is_inside);
     EXPECT_NEAR(framing.from.y, 1.6F, 0.01F) << "eye height";
@@ -82,14 +89,19 @@ TEST(Framing, StandsInsideARoomAndLooksAlongIt) {
 }
 
 TEST(Framing, ARoomThatIsNotInMetresHasEyesInItsMiddle) {
-    const Scene scene = scene_of({box({0.0F, 0.0F, 0.0F}, {1200.0F, 300.0F, 400.0F}, true)});
+    const Scene scene = room_of(box({0.0F, 0.0F, 0.0F}, {1200.0F, 300.0F, 400.0F}, true));
     const Framing framing = framing_of(scene);
     ASSERT_TRUE(framing.is_inside);
     EXPECT_NEAR(framing.from.y, 0.45F * 300.0F, 1.0F);
 }
 
-TEST(Framing, WhatIsSaidCounts) {
+TEST(Framing, NobodyStandsInADarkBox) {
     const Scene scene = scene_of({box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true)});
+    EXPECT_FALSE(framing_of(scene).is_inside) << "no light gets in, and none is there";
+}
+
+TEST(Framing, WhatIsSaidCounts) {
+    const Scene scene = room_of(box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true));
     const Framing framing =
         framing_of(scene, {.look_from = glm::vec3(1.0F, 2.0F, 3.0F), .look_at = glm::vec3(2.0F), .fovy_rad = 0.5F});
     EXPECT_EQ(framing.from, glm::vec3(1.0F, 2.0F, 3.0F));

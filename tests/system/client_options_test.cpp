@@ -161,8 +161,8 @@ TEST(Options, ChangesBuildOnEachOther) {
 
 TEST(Options, ChangesThatCannotBeReadAreNamed) {
     for (const auto& [text, words] :
-         {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid 2"),
-          std::pair("3s:colour=red", "keys are grid"), std::pair("3s:quality=101", "quality=101"),
+         {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid=2: write"),
+          std::pair("3s:colour=red", "keys are anchor"), std::pair("3s:quality=101", "quality=101"),
           std::pair("-1s:grid=2x2", "says when"), std::pair("3s:max-fps=0.004", "max-fps=0.004: write 0, or a number"),
           std::pair("3s:max-fps=nan", "max-fps=nan: write 0, or a number")}) {
         const Invocation invocation = read({"--change", text});
