@@ -61,7 +61,7 @@ def copy_sources(root):
 def run(root, ccache, command, log):
     """Exit code of `command` in the root; what it says goes to the terminal and to `log`."""
     inside = ["chroot", str(root), "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "HOME=/root", "LANG=C.UTF-8",
-              "CCACHE_DIR=/ccache", f"CCACHE_BASEDIR=/{PLACE}", "CCACHE_NOHASHDIR=1",
+              "CCACHE_DIR=/ccache", "CCACHE_BASEDIR=/", "CCACHE_NOHASHDIR=1",
               "sh", "-c", f'cd /{PLACE} && exec "$@"', "sh", *command]
     process = subprocess.Popen(["unshare", "--mount", "--propagation", "private", "sh", "-c", INSIDE, "sh", str(root),
                                 str(ccache), *inside],

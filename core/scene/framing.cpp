@@ -62,23 +62,52 @@ Box bounds_of(const Mesh& mesh) {
     return box;
 }
 
-/// Of everything that is shown.
-Box bounds_of(const Scene& scene, const ScenePose& pose) {
-    std::vector<Box> meshes;
-    for (const Mesh& mesh : scene.meshes) {
-        meshes.push_back(bounds_of(mesh));
-    }
-    Box box;
-    for (const Instance& instance : scene.instances) {
-        if (scene.meshes[instance.mesh].triangles.empty()) {
-            continue;
+/// Points in world space that everything shown lies between: all corners of triangles, or, of scenes with very many, the
+/// corners of their meshes' boxes.
+class Outline {
+public:
+    Outline(const Scene& scene, const ScenePose& pose) : scene_(scene), pose_(pose) {
+        std::uint64_t count = 0;
+        for (const Instance& instance : scene.instances) {
+            count += 3 * scene.meshes[instance.mesh].triangles.size();
         }
-        for (const glm::vec3& corner : meshes[instance.mesh].corners()) {
-            box.add(glm::vec3(pose.world_from_node[instance.node] * glm::vec4(corner, 1.0F)));
+        constexpr std::uint64_t kMostPoints = 30'000'000; // a tenth of a second
+        if (count > kMostPoints) {
+            for (const Mesh& mesh : scene.meshes) {
+                boxes_.push_back(bounds_of(mesh));
+            }
+        }
+        for_each([&](const glm::vec3& point) { box_.add(point); });
+    }
+
+    const Box& box() const { return box_; }
+
+    template <class Function> void for_each(const Function& function) const {
+        for (const Instance& instance : scene_.instances) {
+            const Mesh& mesh = scene_.meshes[instance.mesh];
+            const glm::mat4& placed = pose_.world_from_node[instance.node];
+            const auto visit = [&](const glm::vec3& point) { function(glm::vec3(placed * glm::vec4(point, 1.0F))); };
+            if (mesh.triangles.empty()) {
+                continue;
+            }
+            if (!boxes_.empty()) {
+                std::ranges::for_each(boxes_[instance.mesh].corners(), visit);
+                continue;
+            }
+            for (const glm::uvec3& triangle : mesh.triangles) {
+                visit(mesh.positions[triangle.x]);
+                visit(mesh.positions[triangle.y]);
+                visit(mesh.positions[triangle.z]);
+            }
         }
     }
-    return box;
-}
+
+private:
+    const Scene& scene_;
+    const ScenePose& pose_;
+    std::vector<Box> boxes_; ///< of meshes; empty: triangles are looked at
+    Box box_;
+};
 
 /// Evenly over the sphere (Fibonacci spiral).
 glm::vec3 sphere_direction(int i, int count) {
@@ -200,33 +229,36 @@ glm::quat looking_along(const glm::vec3& direction) {
     return glm::quatLookAt(direction, is_vertical ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
 }
 
-/// From where the whole box is in the image.
-float fitting_distance(const Box& box, const glm::vec3& at, const glm::vec3& back, float fovy_rad, float aspect) {
-    const glm::mat3 axes = glm::mat3_cast(looking_along(-back));
+/// From where everything is in the image.
+float fitting_distance(const Outline& outline, const glm::vec3& at, const glm::vec3& back, float fovy_rad,
+                       float aspect) {
+    const glm::mat3 local_from_world = glm::transpose(glm::mat3_cast(looking_along(-back)));
+    const glm::vec2 slopes(half_width(fovy_rad, aspect), half_width(fovy_rad, 1.0F));
     float distance = 0.0F;
-    for (const glm::vec3& corner : box.corners()) {
-        const glm::vec3 local = glm::transpose(axes) * (corner - at);
-        const float needed = std::max(std::abs(local.x) / half_width(fovy_rad, aspect),
-                                      std::abs(local.y) / half_width(fovy_rad, 1.0F));
+    outline.for_each([&](const glm::vec3& point) {
+        const glm::vec3 local = local_from_world * (point - at);
+        const float needed = std::max(std::abs(local.x) / slopes.x, std::abs(local.y) / slopes.y);
         distance = std::max(distance, kMargin * needed + local.z);
-    }
+    });
     return distance;
 }
 
-Framing object_framing(const Box& box, const FramingOptions& options, float aspect) {
+Framing object_framing(const Outline& outline, const FramingOptions& options, float aspect) {
     const float fovy_rad = options.fovy_rad.value_or(kObjectFovy);
-    const glm::vec3 at = options.look_at.value_or(box.centre());
+    const glm::vec3 at = options.look_at.value_or(outline.box().centre());
     const glm::vec3 back(std::sin(kYaw) * std::cos(kElevation), std::sin(kElevation),
                          std::cos(kYaw) * std::cos(kElevation));
-    const glm::vec3 from = at + back * fitting_distance(box, at, back, fovy_rad, aspect);
+    const glm::vec3 from = at + back * fitting_distance(outline, at, back, fovy_rad, aspect);
     return {.from = options.look_from.value_or(from), .at = at, .fovy_rad = fovy_rad};
 }
 
 } // namespace
 
 Framing find_framing(const Scene& scene, const RayProbe& probe, const FramingOptions& options, float aspect) {
-    const Box box = bounds_of(scene, pose_scene(scene, 0));
-    Framing framing = object_framing(box, options, aspect);
+    const ScenePose pose = pose_scene(scene, 0);
+    const Outline outline(scene, pose);
+    const Box& box = outline.box();
+    Framing framing = object_framing(outline, options, aspect);
     const bool is_open = !options.look_from && !options.look_at && !options.orbit_s;
     if (const auto place = is_open ? RoomFinder(probe, box, has_light(scene)).best() : std::nullopt) {
         framing = {.from = place->eye,

@@ -59,7 +59,8 @@ void check_channels(const Config& config, Problems& problems) {
     }
     std::error_code ignored;
     if (config.environment && !std::filesystem::is_regular_file(*config.environment, ignored)) {
-        problems.push_back("--environment " + config.environment->string() + ": there is no such file");
+        problems.push_back("--environment " + config.environment->string() +
+                           ": there is no such file; or write studio, sky or none");
     }
 }
 
