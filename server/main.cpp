@@ -260,6 +260,9 @@ int start(int argc, char** argv) {
         return render(invocation.config, invocation.job, signals);
     case ops::Invocation::Kind::kRecord:
         return record(invocation.config, invocation.record_job, signals);
+    case ops::Invocation::Kind::kInspect:
+        std::cout << ops::inspect(invocation.inspect_job);
+        return kOk;
     case ops::Invocation::Kind::kServe:
         break;
     }

@@ -254,6 +254,12 @@ Framing object_framing(const Outline& outline, const FramingOptions& options, fl
 
 } // namespace
 
+std::pair<glm::vec3, glm::vec3> extent_of(const Scene& scene) {
+    const ScenePose pose = pose_scene(scene, 0);
+    const Box box = Outline(scene, pose).box();
+    return {box.low, box.high};
+}
+
 Framing find_framing(const Scene& scene, const RayProbe& probe, const FramingOptions& options, float aspect) {
     const ScenePose pose = pose_scene(scene, 0);
     const Outline outline(scene, pose);

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 // How to look at a scene whose file does not say it.
 namespace fieldcast::scene {
@@ -25,6 +26,9 @@ struct Framing {
     float fovy_rad = 0.0F;
     bool is_inside = false; ///< stands in a room
 };
+
+/// Lowest and highest corner of everything that is shown, at the beginning of the animation.
+std::pair<glm::vec3, glm::vec3> extent_of(const Scene& scene);
 
 inline constexpr const char* kFramingCamera = "auto"; ///< name of the camera that add_camera() adds
 

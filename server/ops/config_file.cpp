@@ -116,13 +116,23 @@ std::string with_place(const std::string& problem, const Places& places) {
 }
 
 std::string nearest_flag(const std::string& name, const CLI::App& app) {
-    constexpr std::size_t kLettersPerMistake = 3;
-    std::string best;
-    std::size_t best_distance = (name.size() - 2) / kLettersPerMistake + 1;
+    std::vector<std::string> flags;
     for (const CLI::Option* const option : app.get_options()) {
-        const std::string candidate = option->get_name();
-        const std::size_t distance = edit_distance(name, candidate);
-        if (option->get_configurable() && distance < best_distance + (best.empty() ? 1 : 0)) {
+        if (option->get_configurable()) {
+            flags.push_back(option->get_name());
+        }
+    }
+    return nearest_word(name, flags);
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {
+    constexpr std::size_t kLettersPerMistake = 3;
+    const std::size_t letters = word.size() - (word.starts_with("--") ? 2 : 0);
+    std::string best;
+    std::size_t best_distance = letters / kLettersPerMistake + 1;
+    for (const std::string& candidate : words) {
+        const std::size_t distance = edit_distance(word, candidate);
+        if (distance < best_distance + (best.empty() ? 1 : 0)) {
             best = candidate;
             best_distance = distance;
         }

@@ -35,6 +35,9 @@ std::string flag_name(const std::string& argument);
 /// The flag of `app` that resembles `name` ("--fsp") most; empty: none does.
 std::string nearest_flag(const std::string& name, const CLI::App& app);
 
+/// The one of `words` that may have been meant; empty if none is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
+
 /// What is set, or has a default, as a file that `read_config_file` reads.
 std::string config_text(const CLI::App& app);
 

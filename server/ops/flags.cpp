@@ -7,10 +7,12 @@
 #include "server/ops/config_file.h"
 #include "server/ops/flag_text.h"
 #include "server/ops/health_flags.h"
+#include "server/ops/job_flags.h"
 #include "server/ops/limit_flags.h"
 #include "server/ops/new_token.h"
 #include "server/ops/recording_flags.h"
 #include "server/ops/security_flags.h"
+#include "server/ops/task.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -27,6 +29,7 @@ constexpr const char* kExamples = R"(Examples:
   fieldcast-server render --scene a.gltf --size 640x360 --count 60 --out field   # a light field in files
   fieldcast-server render --help                                                # what else it can write
   fieldcast-server record --scene a.gltf --size 640x360 --count 300 --out a.fcrec   # a channel in a file
+  fieldcast-server inspect a.glb                                                # what is in a file
   fieldcast-server --replay a.fcrec                                             # and back, without a device
   fieldcast-server --make-token alice view
   fieldcast-server --health 127.0.0.1:50151            # exit code 0: SERVING
@@ -199,37 +202,6 @@ void add_health_flags(CLI::App& app, HealthText& text) {
     add("--health-token-file", text.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
 }
 
-void add_offline_flags(CLI::App& app, OfflineJob& job, std::vector<std::string>& products) {
-    const auto add = [&](CLI::Option* option) { option->group("render")->configurable(false); };
-    add(app.add_option("--out", job.out, "Folder for the files")->capture_default_str());
-    add(app.add_option("--count", job.frame_count, "Frames to render, 1/fps apart, from a cold start")
-            ->check(CLI::Range(1U, 1U << 24U))
-            ->capture_default_str());
-    add(app.add_flag("--every-frame", job.writes_every_frame, "Write all frames, each to a folder; else the last"));
-    add(app.add_option("--reference", job.reference_samples,
-                       "Path trace every view of the last frame with so many samples, reuse nothing; also an EXR each")
-            ->check(CLI::Range(1U, 1U << 20U)));
-    add(app.add_option("--write", products, "quilt, views, contact-sheet, look-around, exr (the source's planes)")
-            ->delimiter(',')
-            ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
-            ->capture_default_str());
-}
-
-void add_record_flags(CLI::App& app, RecordJob& job) {
-    const auto add = [&](CLI::Option* option) { option->group("record")->configurable(false); };
-    add(app.add_option("--out", job.out, "The recording")->capture_default_str());
-    add(app.add_option("--count", job.frame_count, "Frames to record, 1/fps apart, from a cold start")
-            ->check(CLI::Range(1U, 1U << 24U))
-            ->capture_default_str());
-}
-
-/// The word in front of the flags.
-enum class Task : std::uint8_t { kServe, kRender, kRecord };
-
-Task task_of(std::string_view word) {
-    return word == "render" ? Task::kRender : word == "record" ? Task::kRecord : Task::kServe;
-}
-
 /// Everything that can be typed, and where it goes.
 struct CommandLine {
     CLI::App app{"Path traces light fields and streams them to many displays.", "fieldcast-server"};
@@ -290,10 +262,13 @@ std::vector<std::string> parse(CommandLine& line, std::vector<std::string> argum
         problems.push_back(problem_text(error, line.app));
     }
     for (const std::string& extra : line.app.remaining(true)) {
+        if (!extra.starts_with("-")) {
+            problems.push_back(stray_word_problem(extra));
+            continue;
+        }
         const std::string nearest = nearest_flag(flag_name(extra), line.app);
-        problems.push_back(!extra.starts_with("-") ? extra + ": belongs to no flag"
-                           : nearest.empty()       ? extra + ": there is no such flag"
-                                                   : extra + ": there is no such flag; did you mean " + nearest + "?");
+        problems.push_back(extra + ": there is no such flag" +
+                           (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
     }
     return problems;
 }
@@ -391,8 +366,19 @@ Invocation read(const std::vector<std::string>& arguments, CommandLine& typed) {
 
 Invocation read_flags(int argc, const char* const* argv) {
     const Task task = argc > 1 ? task_of(argv[1]) : Task::kServe;
+    const std::vector<std::string> arguments{argv + (task == Task::kServe ? 1 : 2), argv + argc};
+    if (task == Task::kInspect) {
+        InspectInvocation asked = read_inspect(arguments);
+        const auto kind = asked.text.empty() ? Invocation::Kind::kInspect : Invocation::Kind::kPrint;
+        Invocation invocation;
+        invocation.kind = kind;
+        invocation.inspect_job = std::move(asked.job);
+        invocation.problems = std::move(asked.problems);
+        invocation.text = std::move(asked.text);
+        return invocation;
+    }
     CommandLine typed(task);
-    return read({argv + (task == Task::kServe ? 1 : 2), argv + argc}, typed);
+    return read(arguments, typed);
 }
 
 } // namespace fieldcast::ops

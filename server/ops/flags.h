@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/ops/config.h"
+#include "server/ops/inspect_job.h"
 #include "server/ops/offline_job.h"
 #include "server/ops/record_job.h"
 #include "server/service/health_probe.h"
@@ -20,18 +21,20 @@ struct Invocation {
         kHealth, ///< only ask the server of `health`
         kRender, ///< `job`, without serving
         kRecord, ///< `record_job`, without serving
+        kInspect, ///< `inspect_job`, without a device
     };
     Kind kind = Kind::kServe;
     Config config;
     service::HealthQuestion health;
     OfflineJob job;
     RecordJob record_job;
+    InspectJob inspect_job;
     std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. "render" or "record" in front asks for files instead of a
-/// service. Reads files that flags name, changes nothing.
+/// Reads flags, or a --config file with the same names. "render", "record" or "inspect" in front asks for files or
+/// a report instead of a service. Reads files that flags name, changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::ops

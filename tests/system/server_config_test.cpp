@@ -77,7 +77,7 @@ TEST_F(ConfigFile, ReportsEveryMistakeWithItsPlace) {
     EXPECT_THAT(problems, Contains(HasSubstr(at(7, "traversal"))));
     EXPECT_THAT(problems, Contains(HasSubstr(at(8, "seed"))));
     EXPECT_THAT(problems, Contains(HasSubstr(at(9, "listen: needs a value"))));
-    EXPECT_THAT(problems, Contains(at(10, "environment absent.exr: there is no such file")));
+    EXPECT_THAT(problems, Contains(at(10, "environment absent.exr: there is no such file; or write studio, sky or none")));
     EXPECT_EQ(problems.size(), 9U) << "one each";
 }
 

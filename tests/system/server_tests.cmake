@@ -38,9 +38,10 @@ target_link_libraries(make_golden_recording PRIVATE server_synthetic fieldcast_s
 fieldcast_test(server_flags_test LABELS quick
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/server_config_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_flags_test.cpp
+            ${CMAKE_CURRENT_LIST_DIR}/server_inspect_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_protocol_page_test.cpp
             ${CMAKE_CURRENT_LIST_DIR}/server_typos_test.cpp
-    DEPENDS fieldcast_server_ops)
+    DEPENDS fieldcast_server_ops nlohmann_json::nlohmann_json)
 find_package(OpenSSL REQUIRED)
 add_library(certificate_authority STATIC ${CMAKE_CURRENT_LIST_DIR}/certificate_authority.cpp)
 target_include_directories(certificate_authority PUBLIC ${PROJECT_SOURCE_DIR}/tests/system)
