@@ -50,9 +50,15 @@ void add_group_flags(CLI::App& app, FlagText& text) {
     Settings& to = text.group;
     const char* const group = "Clients, without --scenario";
     add_setting(app, "--clients", "count", "How many (default 1)", to)->group(group);
-    add_setting(app, "--mode", "mode", "views, scene or warp (default views)", to)->group(group);
+    add_setting(app, "--mode", "mode", alternatives<DeliveryMode>() + " (default views)", to)->group(group);
     add_setting(app, "--grid", "grid", "Views, ROWSxCOLS (default 4x4)", to)->group(group);
     add_setting(app, "--size", "size", "Pixels of a view, WIDTHxHEIGHT; without it: those of the source", to)
+        ->group(group);
+    add_setting(app, "--planes", "planes", "Of mode scene: " + alternatives<PlaneSet>() + " (default g-buffer)", to)
+        ->group(group);
+    add_setting(app, "--codec", "codec", alternatives<Codec>() + "; several with +, most wanted first (default zstd)", to)
+        ->group(group);
+    add_setting(app, "--quality", "quality", "Of lossy codecs, 1 to 100; without it: the server's choice", to)
         ->group(group);
     add_setting(app, "--channel", "channel", "Name of the channel; without it: the server's first", to)->group(group);
     add_setting(app, "--decoding", "decoding", "full, checksum or headers (default checksum)", to)->group(group);
