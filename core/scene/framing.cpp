@@ -322,7 +322,8 @@ std::optional<DepthRange> depth_range(const RayProbe& probe, const glm::mat4& wo
         const float y = 2.0F * (static_cast<float>(i / kCols) + 0.5F) / kRows - 1.0F;
         const glm::vec3 local = glm::normalize(
             glm::vec3(x * half_width(fovy_rad, aspect), y * half_width(fovy_rad, 1.0F), -1.0F));
-        if (const auto hit = probe.trace(glm::vec3(world_from_camera[3]), axes * local)) {
+        const auto hit = probe.trace(glm::vec3(world_from_camera[3]), axes * local);
+        if (hit && hit->distance_m > 0.0F) { // a camera in a surface sees it nowhere
             depths.push_back(hit->distance_m * -local.z);
         }
     }
