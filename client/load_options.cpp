@@ -56,7 +56,8 @@ void add_group_flags(CLI::App& app, FlagText& text) {
         ->group(group);
     add_setting(app, "--planes", "planes", "Of mode scene: " + alternatives<PlaneSet>() + " (default g-buffer)", to)
         ->group(group);
-    add_setting(app, "--codec", "codec", alternatives<Codec>() + "; several with +, most wanted first (default zstd)", to)
+    add_setting(app, "--codec", "codec",
+                alternatives<Codec>() + "; several with +, most wanted first (default zstd)", to)
         ->group(group);
     add_setting(app, "--quality", "quality", "Of lossy codecs, 1 to 100; without it: the server's choice", to)
         ->group(group);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/base/printable.h"
 #include "core/base/stop_signals.h"
 #include "server/channel/channel_list.h"
 #include "server/channel/offline_recording.h"
@@ -237,11 +238,17 @@ int record(const ops::Config& config, const ops::RecordJob& job, const StopSigna
     return kOk;
 }
 
+/// What went wrong may be told in names of a scene's file.
+void complain(std::string_view problem) {
+    constexpr std::size_t kMaxBytes = 8192; // more than any message of ours
+    std::cerr << "fieldcast-server: " << printable(problem, kMaxBytes) << '\n';
+}
+
 int start(int argc, char** argv) {
     const StopSignals signals; // before any thread exists
     const ops::Invocation invocation = ops::read_flags(argc, argv);
     for (const std::string& problem : invocation.problems) {
-        std::cerr << "fieldcast-server: " << problem << '\n';
+        complain(problem);
     }
     std::cout << invocation.text;
     if (!invocation.problems.empty()) {
@@ -275,10 +282,10 @@ int main(int argc, char** argv) {
     try {
         return start(argc, argv);
     } catch (const UserError& error) {
-        std::cerr << "fieldcast-server: " << error.what() << '\n';
+        complain(error.what());
         return kUserError;
     } catch (const std::exception& error) {
-        std::cerr << "fieldcast-server: " << error.what() << '\n';
+        complain(error.what());
         return kMachineFailed;
     }
 }

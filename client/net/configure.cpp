@@ -53,20 +53,20 @@ void add_planes(v1::Configure& message, const Request& request) {
     }
 }
 
-void add_adaptation(v1::Configure& message, const AdaptationBounds& request) {
+void add_adaptation(v1::Configure& message, const AdaptationBounds& allowed) {
     v1::Adaptation& bounds = *message.mutable_adaptation();
-    if (request.allows_jpeg) {
+    if (allowed.allows_jpeg) {
         bounds.add_codecs(v1::CODEC_JPEG);
     }
-    bounds.set_min_quality(request.min_quality);
-    bounds.set_min_frames_per_second(request.min_frames_per_second);
-    bounds.set_min_view_height_px(request.min_view_height_px);
-    bounds.set_min_rows(request.min_rows);
-    bounds.set_min_cols(request.min_cols);
-    if (request.allows_scene) {
+    bounds.set_min_quality(allowed.min_quality);
+    bounds.set_min_frames_per_second(allowed.min_frames_per_second);
+    bounds.set_min_view_height_px(allowed.min_view_height_px);
+    bounds.set_min_rows(allowed.min_rows);
+    bounds.set_min_cols(allowed.min_cols);
+    if (allowed.allows_scene) {
         bounds.add_modes(v1::DELIVERY_MODE_SCENE);
     }
-    bounds.set_max_queue_delay_ms(request.max_queue_delay_ms);
+    bounds.set_max_queue_delay_ms(allowed.max_queue_delay_ms);
 }
 
 /// `request` as it is when everything that a server may change by itself is what it chose, within the bounds. Then a

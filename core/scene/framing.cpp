@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/framing.h"
 
+#include "core/scene/studio.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -214,12 +216,6 @@ private:
     const bool has_light_;
 };
 
-bool has_light(const Scene& scene) {
-    return !scene.lights.empty() || std::ranges::any_of(scene.materials, [](const Material& material) {
-        return glm::any(glm::greaterThan(material.emissive_factor, glm::vec3(0.0F)));
-    });
-}
-
 float half_width(float fovy_rad, float aspect) {
     return std::tan(0.5F * fovy_rad) * aspect;
 }
@@ -252,6 +248,13 @@ Framing object_framing(const Outline& outline, const FramingOptions& options, fl
     return {.from = options.look_from.value_or(from), .at = at, .fovy_rad = fovy_rad};
 }
 
+Framing room_framing(const Place& place, const FramingOptions& options) {
+    return {.from = place.eye,
+            .at = place.eye + place.free_m * place.direction,
+            .fovy_rad = options.fovy_rad.value_or(kRoomFovy),
+            .is_inside = true};
+}
+
 } // namespace
 
 std::pair<glm::vec3, glm::vec3> extent_of(const Scene& scene) {
@@ -264,14 +267,9 @@ Framing find_framing(const Scene& scene, const RayProbe& probe, const FramingOpt
     const ScenePose pose = pose_scene(scene, 0);
     const Outline outline(scene, pose);
     const Box& box = outline.box();
-    Framing framing = object_framing(outline, options, aspect);
     const bool is_open = !options.look_from && !options.look_at && !options.orbit_s;
-    if (const auto place = is_open ? RoomFinder(probe, box, has_light(scene)).best() : std::nullopt) {
-        framing = {.from = place->eye,
-                   .at = place->eye + place->free_m * place->direction,
-                   .fovy_rad = options.fovy_rad.value_or(kRoomFovy),
-                   .is_inside = true};
-    }
+    const auto place = is_open ? RoomFinder(probe, box, has_light(scene)).best() : std::nullopt;
+    Framing framing = place ? room_framing(*place, options) : object_framing(outline, options, aspect);
     const float least = std::max(1e-6F, 1e-4F * glm::length(box.size()));
     if (glm::distance(framing.from, framing.at) < least) { // a point, or looking from where it looks to
         framing.at = framing.from + glm::vec3(0.0F, 0.0F, -least);

@@ -16,15 +16,15 @@ constexpr std::uint32_t kHeight = 32;
 constexpr float kPi = std::numbers::pi_v<float>;
 
 /// A soft light.
-struct Light {
+struct Softbox {
     float azimuth_deg = 0.0F; ///< from +Z towards +X
     float elevation_deg = 0.0F;
     float radius_deg = 0.0F; ///< to half of its radiance
     float radiance = 0.0F;
 };
 
-constexpr std::array kLights{Light{40.0F, 50.0F, 22.0F, 9.0F}, Light{-65.0F, 20.0F, 26.0F, 2.2F},
-                             Light{170.0F, 35.0F, 18.0F, 4.0F}};
+constexpr std::array kSoftboxes{Softbox{40.0F, 50.0F, 22.0F, 9.0F}, Softbox{-65.0F, 20.0F, 26.0F, 2.2F},
+                                Softbox{170.0F, 35.0F, 18.0F, 4.0F}};
 
 glm::vec3 direction_of(float azimuth_deg, float elevation_deg) {
     const float azimuth = azimuth_deg * kPi / 180.0F;
@@ -35,7 +35,7 @@ glm::vec3 direction_of(float azimuth_deg, float elevation_deg) {
 /// Of the wall, floor and ceiling, and the lights on them.
 float radiance_from(const glm::vec3& direction) {
     float radiance = 0.30F + 0.22F * direction.y; // the ceiling is lighter than the floor
-    for (const Light& light : kLights) {
+    for (const Softbox& light : kSoftboxes) {
         const float cosine = glm::dot(direction, direction_of(light.azimuth_deg, light.elevation_deg));
         const float angle_deg = std::acos(std::clamp(cosine, -1.0F, 1.0F)) * 180.0F / kPi;
         radiance += light.radiance * std::exp2(-(angle_deg / light.radius_deg) * (angle_deg / light.radius_deg));
@@ -63,6 +63,12 @@ Grey grey_at(std::uint32_t col, std::uint32_t row) {
 }
 
 } // namespace
+
+bool has_light(const Scene& scene) {
+    return !scene.lights.empty() || std::ranges::any_of(scene.materials, [](const Material& material) {
+        return glm::any(glm::greaterThan(material.emissive_factor, glm::vec3(0.0F)));
+    });
+}
 
 std::vector<std::byte> studio_file() {
     const std::string head =

@@ -7,11 +7,14 @@
 #include <string_view>
 #include <vector>
 
-// An environment for files that bring no light: a grey room with a soft key light above the right shoulder of who looks at
-// the front (+Z), a fill light on the left and a rim light behind.
+// An environment for files that bring no light: a grey room. A soft key light stands at the right of the front (+Z), a fill
+// light at the left, a rim light behind.
 namespace fieldcast::scene {
 
 inline constexpr std::string_view kStudioExtension = ".hdr";
+
+/// Whether anything in the file gives light: a lamp, or a material that emits.
+bool has_light(const Scene& scene);
 
 /// The studio as a Radiance file (RGBE, 64×32, equirectangular), as it travels in bundles. Always the same bytes.
 std::vector<std::byte> studio_file();

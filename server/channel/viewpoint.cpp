@@ -67,15 +67,15 @@ void fit_lattice(const scene::Scene& scene, const ops::Config& config, const sce
     const glm::mat4 pose = scene::camera_pose(scene::pose_scene(scene, start_ns), camera);
     const auto depths = scene::depth_range(probe, pose, camera.fovy_rad, aspect_of(config));
     if (!depths) {
-        viewpoint.spacing_m = config.spacing_m.value_or(kDefaultSpacing_m);
+        viewpoint.spacing_m = kDefaultSpacing_m;
         return;
     }
     if (!config.has_convergence) {
         viewpoint.convergence_m = depths->middle_m;
     }
     const std::uint32_t count = std::max({config.largest_grid.rows, config.largest_grid.cols, 2U});
-    viewpoint.spacing_m = config.spacing_m.value_or(
-        scene::comfortable_spacing(*depths, viewpoint.convergence_m, count, camera.fovy_rad, aspect_of(config)));
+    viewpoint.spacing_m =
+        scene::comfortable_spacing(*depths, viewpoint.convergence_m, count, camera.fovy_rad, aspect_of(config));
     log::info("views fitted to the scene",
               {{"channel", name},
                {"spacing_m", static_cast<double>(viewpoint.spacing_m)},
@@ -101,9 +101,9 @@ Viewpoint settle_viewpoint(scene::Scene& scene, const ops::Config& config, const
     } else {
         throw UserError(scene.name + ": has no camera '" + config.camera + "'; it has " + camera_names(scene));
     }
-    const std::optional<float> spacing_of_file = scene.cameras[viewpoint.camera].spacing_m;
-    if (config.spacing_m || spacing_of_file) {
-        viewpoint.spacing_m = config.spacing_m.value_or(spacing_of_file.value_or(0.0F));
+    const std::optional<float> said_m = config.spacing_m ? config.spacing_m : scene.cameras[viewpoint.camera].spacing_m;
+    if (said_m) {
+        viewpoint.spacing_m = *said_m;
     } else {
         fit_lattice(scene, config, rays(), name, viewpoint);
     }

@@ -197,8 +197,8 @@ std::string text_of(const Json& report) {
         return image["name"].get<std::string>() + ", " + std::to_string(image["width_px"].get<int>()) + "x" +
                std::to_string(image["height_px"].get<int>());
     });
-    text << "  lights        " << counted(report["lights"]) << "; environment " << report["environment"].get<std::string>()
-         << '\n';
+    text << "  lights        " << counted(report["lights"]) << "; environment "
+         << report["environment"].get<std::string>() << '\n';
     text << "  cameras       " << report["cameras"].size() << '\n';
     write_some(text, report["cameras"], [](const Json& camera) {
         return std::to_string(camera["number"].get<int>()) + " " + camera["name"].get<std::string>() +

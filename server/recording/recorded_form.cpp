@@ -102,13 +102,16 @@ std::optional<RecordedForm> parse_form(const std::string& text) {
 
 std::string form_syntax() {
     std::string others;
+    const auto add = [&others](std::string_view word) {
+        others += others.empty() ? "" : ", ";
+        others += word;
+    };
     for (const PlaneSet set : kAll<PlaneSet>) {
-        others += word_of(set);
-        others += ", ";
+        add(word_of(set));
     }
     for (const DeliveryMode mode : kAll<DeliveryMode>) {
         if (is_made_by_client(mode) && !row_of(mode).planes.empty()) {
-            others += word_of(mode);
+            add(word_of(mode));
         }
     }
     return "write views[:RxC[:WxH]][:CODEC[:QUALITY]], or " + others + " with [:CODEC[:QUALITY]]; codecs: " +

@@ -82,7 +82,9 @@ void ServiceMetrics::add(const std::string& channel, const session::SessionCount
     }
     for (const auto& [choice, bytes] : counts.plane_bytes) {
         add("fieldcast_plane_bytes_total", "Payload of complete frames, by plane and codec.",
-            {{"channel", channel}, {"plane", std::string(word_of(choice.semantic))}, {"codec", std::string(word_of(choice.encoding.codec))}},
+            {{"channel", channel},
+             {"plane", std::string(word_of(choice.semantic))},
+             {"codec", std::string(word_of(choice.encoding.codec))}},
             bytes);
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every delivery mode, with every set of planes and every codec that it may have, goes through everything that has to know
-// it: negotiation, the ladder of adaptation, a recording, the load harness and the metrics. A new row of the vocabulary is
-// walked by itself.
+// Every delivery mode, with every set of planes and codec that it may have, goes through all that has to know it:
+// negotiation, ladder of adaptation, recording, load harness, metrics. A new row of the vocabulary is walked by itself.
 #include "client/net/request_text.h"
 #include "run_until.h"
 #include "server/recording/replay.h"
@@ -20,9 +19,7 @@ using std::chrono_literals::operator""s;
 /// One way to ask for a stream: settings as a user types them.
 struct Walk {
     net::Request request;
-    std::string form; ///< of a recording that has it
-
-    std::string name() const { return form; }
+    std::string form; ///< of a recording that has it; names the walk
 };
 
 std::vector<Walk> walks_of(DeliveryMode mode, PlaneSet set, const std::string& content) {
@@ -102,7 +99,7 @@ TEST(VocabularyWalk, HasEveryModeAndCodec) {
 TEST(VocabularyWalk, NegotiationGrantsWhatIsAsked) {
     const std::vector<std::shared_ptr<feed::Feed>> channels{std::make_shared<feed::Feed>(test::synthetic_info())};
     for (const Walk& walk : all_walks()) {
-        SCOPED_TRACE(walk.name());
+        SCOPED_TRACE(walk.form);
         const auto granted = session::negotiate(configure_of(walk), channels, {});
         ASSERT_TRUE(granted.has_value()) << granted.error().message;
         EXPECT_EQ(granted->mode, walk.request.mode);
@@ -118,7 +115,7 @@ TEST(VocabularyWalk, NegotiationGrantsWhatIsAsked) {
 TEST(VocabularyWalk, EveryStepOfTheLadderSendsSomethingElse) {
     const std::vector<std::shared_ptr<feed::Feed>> channels{std::make_shared<feed::Feed>(test::synthetic_info())};
     for (const Walk& walk : all_walks()) {
-        SCOPED_TRACE(walk.name());
+        SCOPED_TRACE(walk.form);
         const v1::Configure wanted = configure_of(walk);
         const auto granted = session::negotiate(wanted, channels, {});
         ASSERT_TRUE(granted.has_value());
@@ -149,7 +146,7 @@ protected:
         scenario.threads = 2;
         for (const Walk& walk : walks) {
             Group& group = scenario.groups.emplace_back();
-            group.name = walk.name();
+            group.name = walk.form;
             group.request = walk.request;
             group.request.max_frames_per_second = 5.0F;
             group.decoding = wire::Decoding::kFull;
@@ -169,7 +166,7 @@ protected:
         const std::string page = registry_->page().text();
         for (const Walk& walk : walks) {
             const std::string label = "codec=\"" + std::string(word_of(walk.request.codecs.front())) + "\"";
-            EXPECT_THAT(page, testing::HasSubstr(label)) << walk.name();
+            EXPECT_THAT(page, testing::HasSubstr(label)) << walk.form;
         }
     }
 

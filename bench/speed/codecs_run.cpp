@@ -175,7 +175,8 @@ void CodecsRun::measure_total_light(const SourceFrame& frame, const Views& uncod
         samples(name_of(PlaneSemantic::kTotalLight), codings_[i]).add(coded);
         received.planes.push_back(std::move(coded.decoded));
         if (merged_[i]) {
-            compare(make_views(*merged_[i], received), uncoded, samples(name_of(PlaneSemantic::kTotalLight), codings_[i]));
+            compare(make_views(*merged_[i], received), uncoded,
+                    samples(name_of(PlaneSemantic::kTotalLight), codings_[i]));
         }
     }
 }

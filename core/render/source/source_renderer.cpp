@@ -134,7 +134,8 @@ void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
                              .settings = header.settings});
 }
 
-// Where views are denoised, the source's light stays as it was traced: only layers, which no view denoises, are filtered.
+// Where views are denoised, the source's light stays as it was traced. Only layers, which no view denoises, are
+// filtered.
 void SourceRenderer::State::record_pack() {
     const std::uint32_t pages = planes.page_count();
     const std::uint32_t noisy_pages = denoises_views(planes.header()) ? planes.source_count() : 0;

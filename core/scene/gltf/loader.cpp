@@ -27,13 +27,6 @@ double longest_animation_s(const std::vector<AnimationChannel>& channels) {
     return duration_s;
 }
 
-/// Whether nothing in the file gives light.
-bool is_unlit(const Scene& scene) {
-    return scene.lights.empty() && std::ranges::none_of(scene.materials, [](const Material& material) {
-               return glm::any(glm::greaterThan(material.emissive_factor, glm::vec3(0.0F)));
-           });
-}
-
 bool wants_studio(const Scene& scene, const LoadOptions& options) {
     if (options.environment) {
         return false;
@@ -44,7 +37,7 @@ bool wants_studio(const Scene& scene, const LoadOptions& options) {
     case Surroundings::kStudio:
         return true;
     case Surroundings::kStudioIfUnlit:
-        return is_unlit(scene);
+        return !has_light(scene);
     }
     return false;
 }
