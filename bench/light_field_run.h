@@ -4,8 +4,8 @@
 #include "bench/benchmark_scene.h"
 #include "bench/measure.h"
 #include "core/render/setup.h"
-#include "core/render/source_renderer.h"
-#include "core/scene/gltf_loader.h"
+#include "core/render/source/source_renderer.h"
+#include "core/scene/gltf/loader.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/report/chart.h"
+#include "report/chart.h"
 
 #include "core/base/error.h"
-#include "core/report/page.h"
+#include "report/page.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/report/curve_chart.h"
+#include "report/curve_chart.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/report/markup.h"
+#include "report/markup.h"
 
 #include <array>
 #include <iomanip>

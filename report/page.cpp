@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/report/page.h"
+#include "report/page.h"
 
-#include "core/report/style.h"
 #include "core/base/error.h"
 #include "core/image/atomic_file.h"
+#include "report/style.h"
 
 #include <system_error>
 

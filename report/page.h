@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/report/markup.h"
+#include "report/markup.h"
 
 #include <utility>
 #include <vector>

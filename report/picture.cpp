@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours of errors: control points of "magma" by S. van der Walt and N. Smith (matplotlib, CC0).
-#include "core/report/picture.h"
+#include "report/picture.h"
 
 #include "core/base/error.h"
 

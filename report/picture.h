@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/report/page.h"
 #include "core/image/image_file.h"
+#include "report/page.h"
 
 namespace fieldcast::report {
 

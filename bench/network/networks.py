@@ -8,7 +8,7 @@ after the other.
 root, `ip`, `tc`, `openssl` and a kernel with netem; where one of them is missing it says so and exits with 77.
 --method relay: on loopback, through relay.py, which imitates the same on the bytes of the connection.
 --method auto: netem if possible.
---synthetic: the real service with frames that cost nothing to render (tests/system/synthetic_server.cpp), through the
+--synthetic: the real service with frames that cost nothing to render (tests/server/synthetic_server.cpp), through the
 relay: on a machine without a GPU, rendering hides the network.
 """
 import argparse
@@ -93,7 +93,7 @@ class Server:
         words = [program, "--scene", options.scene, "--size", options.size, "--port-file", str(self.port_file),
                  *options.server_flags.split()]
         if options.synthetic:
-            words = [f"{options.programs}/tests/system/synthetic_server", str(self.port_file)]
+            words = [f"{options.programs}/tests/server/synthetic_server", str(self.port_file)]
         elif is_protected:
             certificate, key = str(folder / "cert.pem"), str(folder / "key.pem")
             sh("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=fieldcast",

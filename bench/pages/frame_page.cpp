@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/frame_page.h"
+#include "bench/pages/frame_page.h"
 
-#include "bench/result_page.h"
+#include "bench/pages/result_page.h"
 #include "core/lightfield/vocabulary.h"
-#include "core/report/chart.h"
+#include "report/chart.h"
 
 #include <algorithm>
 #include <array>

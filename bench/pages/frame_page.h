@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/report/page.h"
+#include "report/page.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/quality_page.h"
+#include "bench/pages/quality_page.h"
 
+#include "bench/pages/result_page.h"
 #include "bench/quality_table.h"
-#include "bench/result_page.h"
 #include "core/image/correspondence.h"
 #include "core/image/metrics.h"
-#include "core/report/chart.h"
-#include "core/report/picture.h"
+#include "report/chart.h"
+#include "report/picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "bench/named_picture.h"
 #include "bench/picture_id.h"
-#include "core/report/page.h"
+#include "report/page.h"
 
 #include <nlohmann/json.hpp>
 

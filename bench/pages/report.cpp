@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench report`: the report of `quality` from what `quality --out` wrote, with what was added since (FLIP).
 #include "bench/commands.h"
-#include "bench/quality_page.h"
+#include "bench/pages/quality_page.h"
 #include "core/base/error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/result_page.h"
+#include "bench/pages/result_page.h"
 
-#include "core/report/chart.h"
+#include "report/chart.h"
 
 namespace fieldcast::bench {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/sources_page.h"
+#include "bench/pages/sources_page.h"
 
+#include "bench/pages/result_page.h"
 #include "bench/quality_table.h"
-#include "bench/result_page.h"
-#include "core/report/chart.h"
+#include "report/chart.h"
 
 #include <algorithm>
 

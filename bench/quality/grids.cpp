@@ -2,10 +2,10 @@
 // `fieldcast-bench grids`: does quality depend on how many views a client asks for (the paper's figure 4)?
 #include "bench/commands.h"
 #include "bench/csv.h"
-#include "bench/grids_page.h"
-#include "bench/grids_run.h"
-#include "bench/protocol_options.h"
+#include "bench/pages/grids_page.h"
 #include "bench/provenance.h"
+#include "bench/quality/grids_run.h"
+#include "bench/quality/protocol_options.h"
 #include "bench/quality_table.h"
 #include "core/base/error.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/grids_run.h"
+#include "bench/quality/grids_run.h"
 
 #include "bench/interrupt.h"
 #include "bench/progress.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/ground_truth.h"
+#include "bench/quality/ground_truth.h"
 
-#include "bench/motion.h"
+#include "bench/quality/motion.h"
 
 namespace fieldcast::bench {
 

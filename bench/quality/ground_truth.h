@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/protocol.h"
-#include "bench/references.h"
-#include "bench/view_maker.h"
+#include "bench/quality/protocol.h"
+#include "bench/quality/references.h"
+#include "bench/quality/view_maker.h"
 
 #include <map>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/heat_map.h"
+#include "bench/quality/heat_map.h"
 
 #include "core/base/error.h"
 

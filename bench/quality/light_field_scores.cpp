@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/light_field_scores.h"
+#include "bench/quality/light_field_scores.h"
 
-#include "bench/scores.h"
+#include "bench/quality/scores.h"
 #include "core/base/error.h"
 #include "core/image/epipolar.h"
 #include "core/image/metrics.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/motion.h"
+#include "bench/quality/motion.h"
 
 #include <algorithm>
 

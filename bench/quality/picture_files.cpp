@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/picture_files.h"
+#include "bench/quality/picture_files.h"
 
 #include "core/image/metrics.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol.h"
+#include "bench/quality/protocol.h"
 
 #include "core/base/error.h"
 

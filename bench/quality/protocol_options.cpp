@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/protocol_options.h"
+#include "bench/quality/protocol_options.h"
 
 #include <set>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/benchmark_scene.h"
-#include "bench/protocol.h"
+#include "bench/quality/protocol.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,9 +2,9 @@
 // `fieldcast-bench quality`: errors of views against references (the paper's table 1).
 #include "bench/commands.h"
 #include "bench/csv.h"
-#include "bench/protocol_options.h"
 #include "bench/provenance.h"
-#include "bench/quality_run.h"
+#include "bench/quality/protocol_options.h"
+#include "bench/quality/quality_run.h"
 #include "bench/quality_table.h"
 
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/quality_row.h"
+#include "bench/quality/quality_row.h"
 
 #include "bench/measure.h"
 #include "core/image/metrics.h"

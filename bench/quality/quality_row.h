@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/ground_truth.h"
-#include "bench/light_field_scores.h"
-#include "bench/scores.h"
-#include "bench/temporal_scores.h"
+#include "bench/quality/ground_truth.h"
+#include "bench/quality/light_field_scores.h"
+#include "bench/quality/scores.h"
+#include "bench/quality/temporal_scores.h"
 
 namespace fieldcast::bench {
 

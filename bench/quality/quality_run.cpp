@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/quality_run.h"
+#include "bench/quality/quality_run.h"
 
 #include "bench/interrupt.h"
-#include "bench/picture_files.h"
 #include "bench/progress.h"
+#include "bench/quality/picture_files.h"
 #include "core/base/error.h"
 
 #include <algorithm>

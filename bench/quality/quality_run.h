@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/benchmark_scene.h"
-#include "bench/quality_page.h"
-#include "bench/quality_row.h"
+#include "bench/pages/quality_page.h"
+#include "bench/quality/quality_row.h"
 
 namespace fieldcast::bench {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench reference`: makes what `quality` and `grids` compare with, beforehand.
 #include "bench/commands.h"
-#include "bench/protocol_options.h"
-#include "bench/references.h"
+#include "bench/quality/protocol_options.h"
+#include "bench/quality/references.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/references.h"
+#include "bench/quality/references.h"
 
 #include "bench/interrupt.h"
 #include "bench/progress.h"

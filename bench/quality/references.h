@@ -3,7 +3,7 @@
 
 #include "bench/light_field_run.h"
 #include "bench/picture_id.h"
-#include "bench/reference_picture.h"
+#include "bench/quality/reference_picture.h"
 #include "core/render/reference_renderer.h"
 
 #include <functional>

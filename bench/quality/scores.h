@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/picture_id.h"
-#include "bench/reference_picture.h"
+#include "bench/quality/reference_picture.h"
 
 #include <nlohmann/json.hpp>
 #include <vector>

@@ -2,11 +2,11 @@
 // `fieldcast-bench sources`: which and how many views should be path traced (the paper's figure 5)?
 #include "bench/commands.h"
 #include "bench/csv.h"
-#include "bench/protocol_options.h"
+#include "bench/pages/sources_page.h"
 #include "bench/provenance.h"
+#include "bench/quality/protocol_options.h"
 #include "bench/quality_table.h"
-#include "bench/sources_page.h"
-#include "bench/sources_run.h"
+#include "bench/quality/sources_run.h"
 #include "core/lightfield/presets.h"
 
 #include <iomanip>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/sources_run.h"
+#include "bench/quality/sources_run.h"
 
-#include "bench/heat_map.h"
 #include "bench/interrupt.h"
 #include "bench/progress.h"
+#include "bench/quality/heat_map.h"
 #include "core/base/error.h"
 #include "core/lightfield/sources.h"
 

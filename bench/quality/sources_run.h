@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/benchmark_scene.h"
-#include "bench/quality_row.h"
+#include "bench/quality/quality_row.h"
 
 namespace fieldcast::bench {
 

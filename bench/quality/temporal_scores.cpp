@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/temporal_scores.h"
+#include "bench/quality/temporal_scores.h"
 
-#include "bench/scores.h"
+#include "bench/quality/scores.h"
 
 namespace fieldcast::bench {
 

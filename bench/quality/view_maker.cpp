@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/view_maker.h"
+#include "bench/quality/view_maker.h"
 
 #include "bench/picture_id.h"
 #include "core/base/error.h"

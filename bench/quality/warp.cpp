@@ -4,7 +4,7 @@
 #include "bench/csv.h"
 #include "bench/provenance.h"
 #include "bench/quality_table.h"
-#include "bench/warp_run.h"
+#include "bench/quality/warp_run.h"
 
 #include <iomanip>
 #include <iostream>

@@ -3,7 +3,7 @@
 
 #include "bench/coded_plane.h"
 #include "bench/light_field_run.h"
-#include "core/render/warp_planes.h"
+#include "core/render/warp/warp_planes.h"
 
 #include <filesystem>
 

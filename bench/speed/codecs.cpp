@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench codecs`: what planes and views weigh in every codec, what that takes, and what lossy ones take away.
-#include "bench/codecs_run.h"
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/provenance.h"
 #include "bench/quality_table.h"
+#include "bench/speed/codecs_run.h"
 #include "core/base/error.h"
 
 #include <iomanip>

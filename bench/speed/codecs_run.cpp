@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/codecs_run.h"
+#include "bench/speed/codecs_run.h"
 
 #include "bench/interrupt.h"
 #include "bench/progress.h"

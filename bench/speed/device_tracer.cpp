@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/device_tracer.h"
+#include "bench/speed/device_tracer.h"
 
 #include "shaders/shared/bvh.h"
 #include "shaders/trace_rays_any_alpha_bvh.spv.h"

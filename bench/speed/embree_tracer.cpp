@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/embree_tracer.h"
+#include "bench/speed/embree_tracer.h"
 
 #include "core/base/error.h"
 #include "core/scene/bvh_embree.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench frame`: where the time of one frame goes, stage by stage (the paper's figure 3).
 #include "bench/commands.h"
-#include "bench/frame_page.h"
 #include "bench/interrupt.h"
 #include "bench/light_field_run.h"
+#include "bench/pages/frame_page.h"
 #include "bench/progress.h"
 #include "bench/provenance.h"
 #include "core/base/error.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/rays.h"
+#include "bench/speed/rays.h"
 
 #include "core/lightfield/camera.h"
 

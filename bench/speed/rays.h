@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/embree_tracer.h"
+#include "bench/speed/embree_tracer.h"
 #include "core/scene/scene.h"
 #include "shaders/shared/trace_rays.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // `fieldcast-bench trace`: the same rays through our kernels and through Embree, repetitions interleaved, medians.
 #include "bench/commands.h"
-#include "bench/device_tracer.h"
 #include "bench/measure.h"
-#include "bench/rays.h"
+#include "bench/speed/device_tracer.h"
+#include "bench/speed/rays.h"
 #include "core/base/error.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include <algorithm>
 #include <cmath>

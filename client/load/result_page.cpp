@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/load_result.h"
-#include "core/report/chart.h"
-#include "core/report/curve_chart.h"
-#include "core/report/page.h"
+#include "report/chart.h"
+#include "report/curve_chart.h"
+#include "report/page.h"
 
 #include <algorithm>
 #include <cmath>

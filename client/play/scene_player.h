@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/gpu/device.h"
-#include "core/render/grid_renderer.h"
-#include "core/render/source_renderer.h"
+#include "core/render/source/source_renderer.h"
+#include "core/render/views/grid_renderer.h"
 #include "core/wire/frame_assembler.h"
 
 #include <string>

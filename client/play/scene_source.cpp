@@ -5,7 +5,7 @@
 
 #include "core/base/log.h"
 #include "core/base/printable.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include <algorithm>
 

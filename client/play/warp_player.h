@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gpu/device.h"
-#include "core/render/warp_renderer.h"
+#include "core/render/warp/warp_renderer.h"
 #include "core/wire/frame_assembler.h"
 
 namespace fieldcast::client::play {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/setup.h"
 
-#include "core/render/source_renderer.h"
+#include "core/render/source/source_renderer.h"
 
 #include <algorithm>
 #include <cmath>

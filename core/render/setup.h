@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/lightfield/guard_band.h"
-#include "core/render/grid_renderer.h"
+#include "core/render/views/grid_renderer.h"
 
 namespace fieldcast::render {
 

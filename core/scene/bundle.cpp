@@ -12,7 +12,7 @@
 #include "core/scene/bundle.h"
 
 #include "core/scene/environment.h"
-#include "core/scene/gltf_document.h"
+#include "core/scene/gltf/document.h"
 #include "core/scene/uri.h"
 
 #include <bit>

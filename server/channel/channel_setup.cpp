@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/render/setup.h"
-#include "core/render/view_filter.h"
+#include "core/render/views/view_filter.h"
 #include "core/scene/bundle.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 #include "server/channel/frame_renderer.h"
 #include "server/channel/viewpoint.h"
 

@@ -3,9 +3,9 @@
 
 #include "core/gpu/device.h"
 #include "core/image/image_file.h"
-#include "core/render/grid_renderer.h"
-#include "core/render/source_renderer.h"
-#include "core/render/warp_planes.h"
+#include "core/render/source/source_renderer.h"
+#include "core/render/views/grid_renderer.h"
+#include "core/render/warp/warp_planes.h"
 #include "core/scene/gpu_scene.h"
 #include "server/channel/channel_clock.h"
 #include "server/feed/channel_info.h"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/lightfield/view_grid.h"
-#include "server/feed/view_memory.h"
 #include "server/feed/selection.h"
+#include "server/feed/view_memory.h"
 
 #include <array>
 #include <chrono>

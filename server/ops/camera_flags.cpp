@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <string_view>
 #include <sstream>
+#include <string_view>
 
 namespace fieldcast::ops {
 

@@ -3,10 +3,10 @@
 
 #include "core/base/log.h"
 #include "core/lightfield/camera.h"
-#include "core/scene/framing.h"
-#include "core/scene/load_options.h"
 #include "core/lightfield/render_settings.h"
 #include "core/lightfield/view_grid.h"
+#include "core/scene/framing.h"
+#include "core/scene/load_options.h"
 #include "server/feed/channel_info.h"
 #include "server/recording/recorded_form.h"
 #include "server/recording/replay.h"

@@ -3,8 +3,8 @@
 
 #include "core/base/printable.h"
 #include "core/scene/framing.h"
-#include "core/scene/gltf_extensions.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/extensions.h"
+#include "core/scene/gltf/loader.h"
 #include "server/ops/config_file.h"
 
 #include <CLI/CLI.hpp>

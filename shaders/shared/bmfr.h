@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blockwise fits of illumination to features of the surfaces (core/render/bmfr.h).
+// Blockwise fits of illumination to features of the surfaces (core/render/denoise/bmfr.h).
 #ifndef FIELDCAST_SHARED_BMFR_H
 #define FIELDCAST_SHARED_BMFR_H
 #include "frame.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views made from images with depth alone (core/render/warp_renderer.h).
+// Views made from images with depth alone (core/render/warp/warp_renderer.h).
 #ifndef FIELDCAST_SHARED_WARP_H
 #define FIELDCAST_SHARED_WARP_H
 #include "types.h"

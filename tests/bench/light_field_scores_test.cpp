@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/light_field_scores.h"
+#include "bench/quality/light_field_scores.h"
 
 #include "core/image/transfer.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reports of results: every section is there if its numbers are, and names from outside stay text.
-#include "bench/frame_page.h"
-#include "bench/grids_page.h"
-#include "bench/quality_page.h"
+#include "bench/pages/frame_page.h"
+#include "bench/pages/grids_page.h"
+#include "bench/pages/quality_page.h"
 #include "bench/quality_table.h"
 #include "tests/unit/report/html_check.h"
 

@@ -92,7 +92,7 @@ class Metrics(unittest.TestCase):
 
 
 class Tables(unittest.TestCase):
-    """What bench/flip.py does beside FLIP itself."""
+    """What bench/quality/flip.py does beside FLIP itself."""
 
     RESULT = {"command": "bench a", "scene": "Hall", "rows": {"ours": {"flip": 0.125}, "svgf": {"flip": 0.25}}}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/scores.h"
+#include "bench/quality/scores.h"
 
 #include "core/image/transfer.h"
 

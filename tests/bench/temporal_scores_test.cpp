@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/temporal_scores.h"
+#include "bench/quality/temporal_scores.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Where a client takes its token from, and when it does not send it.
 #include "client/net/connection.h"
 #include "core/base/error.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a client accepts of a server that grants and changes streams, and what it does not.
-#include "client_session.h"
+#include "tests/client/client_session.h"
 
 #include "core/wire/convert.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "client/net/session.h"
-#include "client_fake_server.h"
+#include "tests/client/fake_server.h"
 
 #include <gtest/gtest.h>
 

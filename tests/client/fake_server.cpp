@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "client_fake_server.h"
+#include "tests/client/fake_server.h"
 
 #include "core/wire/chunks.h"
 #include "core/wire/convert.h"

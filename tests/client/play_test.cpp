@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Receiving with reconnects, and whole runs of `play` in mode views, against a server that follows a script.
 #include "client/play/playback.h"
-#include "client_fake_server.h"
-#include "test_folder.h"
+#include "tests/client/fake_server.h"
+#include "tests/fixtures/test_folder.h"
 
 #include "core/image/image_file.h"
 

@@ -2,7 +2,7 @@
 #include "client/net/connection.h"
 #include "client/play/cache_entry.h"
 #include "client/play/scene_cache.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <algorithm>
 #include <atomic>

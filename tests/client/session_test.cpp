@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a client does with the stream of a server that follows a script.
-#include "client_session.h"
-#include "closed_port.h"
+#include "tests/client/client_session.h"
+#include "tests/client/closed_port.h"
 
 #include "core/wire/convert.h"
 

@@ -2,14 +2,14 @@
 // Steering from the command line: where poses come from, and what a run sends, against a server that follows a script.
 #include "client/play/live_poses.h"
 #include "client/play/playback.h"
-#include "client_fake_server.h"
-#include "polling.h"
-#include "test_folder.h"
+#include "tests/client/fake_server.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <cmath>
 #include <fstream>
-#include <gmock/gmock.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 namespace fieldcast::test {

@@ -3,7 +3,7 @@
 // the session sends goes to a client's assembler, which must accept all of it.
 #include "server/session/session.h"
 #include "tests/fuzz/received_chunks.h"
-#include "tests/system/server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 namespace fieldcast::fuzz {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An input is a .glb or .gltf file. What it refers to must lie in it: there is nothing beside it.
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include "core/base/error.h"
 #include "core/scene/light_tables.h"

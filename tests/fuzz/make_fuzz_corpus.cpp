@@ -6,8 +6,8 @@
 #include "server/session/session.h"
 #include "tests/fuzz/input.h"
 #include "tests/scene/gltf_builder.h"
-#include "tests/system/server_synthetic.h"
-#include "tests/system/server_synthetic_recording.h"
+#include "tests/server/synthetic.h"
+#include "tests/server/synthetic_recording.h"
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/device_tracer.h"
+#include "bench/speed/device_tracer.h"
 #include "core/scene/scene.h"
 
 #include <gmock/gmock.h>

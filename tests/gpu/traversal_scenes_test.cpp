@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The traversals and Embree agree on real scenes (conventions.md, "Identity and surfaces").
-#include "bench/rays.h"
-#include "core/scene/gltf_loader.h"
+#include "bench/speed/rays.h"
+#include "core/scene/gltf/loader.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/traversal_reference.h"
 

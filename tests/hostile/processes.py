@@ -104,7 +104,7 @@ class Server(Process):
                      *self._metrics_flags(flags), *flags]
         super().__init__(arguments, folder / "server.log", env={
             **subprocess.os.environ, "ASAN_OPTIONS": ASAN_OPTIONS,
-            "LSAN_OPTIONS": f"suppressions={ROOT}/tests/system/leaks.supp:print_suppressions=0"},
+            "LSAN_OPTIONS": f"suppressions={ROOT}/tests/fixtures/leaks.supp:print_suppressions=0"},
             preexec_fn=None if max_descriptors is None else lambda: resource.setrlimit(
                 resource.RLIMIT_NOFILE, (max_descriptors, max_descriptors)))
         self.wait_until(lambda: port_file.exists() and port_file.read_text().strip(), "the server's port")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load_options.h"
 
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <cstdlib>
 #include <gmock/gmock.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program as people and pipelines call it.
-#include "client_fake_server.h"
-#include "frame_time.h"
-#include "program.h"
-#include "test_folder.h"
+#include "tests/client/fake_server.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/frame_time.h"
 
 #include <csignal>
 #include <gmock/gmock.h>

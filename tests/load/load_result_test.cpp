@@ -2,7 +2,7 @@
 #include "client/load/load_result.h"
 #include "client/load/result_files.h"
 
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include "core/base/error.h"
 #include "tests/unit/report/html_check.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole runs, against a server that follows a script. Times are short, and bounds wide enough for a busy machine.
 #include "client/load/load_run.h"
-#include "client_fake_server.h"
-#include "closed_port.h"
-#include "frame_time.h"
 #include "run_until.h"
+#include "tests/client/closed_port.h"
+#include "tests/client/fake_server.h"
+#include "tests/server/frame_time.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 // The load harness against the real service, with synthetic frames instead of rendered ones.
 #include "run_until.h"
 #include "server/service/grpc_server.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "run_until.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
-#include "server_synthetic_recording.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/synthetic_recording.h"
 
 #include <gtest/gtest.h>
 

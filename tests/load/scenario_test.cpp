@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/load/scenario.h"
 
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include "core/base/error.h"
 

@@ -6,8 +6,8 @@
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server/session/ladder.h"
-#include "server_synthetic_recording.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/synthetic_recording.h"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fits of BMFR against a QR factorisation on the host.
 #include "core/image/packing.h"
-#include "core/render/bmfr.h"
 #include "core/render/camera_record.h"
+#include "core/render/denoise/bmfr.h"
 #include "tests/render/render_test.h"
 
 #include <cmath>

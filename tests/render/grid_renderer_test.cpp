@@ -3,7 +3,7 @@
 #include "core/image/packing.h"
 #include "core/lightfield/sources.h"
 #include "core/render/setup.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 #include "tests/render/render_test.h"
 
 #include <cmath>

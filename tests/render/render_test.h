@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/grid_renderer.h"
 #include "core/render/reference_renderer.h"
-#include "core/render/source_renderer.h"
+#include "core/render/source/source_renderer.h"
+#include "core/render/views/grid_renderer.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/render/test_scenes.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views that average and denoise their own light: accumulate_views and DenoisedImages::kViews.
 #include "core/base/error.h"
-#include "core/render/view_filter.h"
+#include "core/render/views/view_filter.h"
 #include "tests/render/render_test.h"
 
 #include <cmath>

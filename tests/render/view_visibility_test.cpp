@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What views see is the same whether rays find it or a rasteriser.
 #include "core/render/camera_record.h"
-#include "core/render/drawn_visibility.h"
 #include "core/render/view_request.h"
+#include "core/render/views/drawn_visibility.h"
 #include "shaders/shared/scene.h"
 #include "tests/render/render_test.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views made from colour and depth, against the same views of a scene that is known exactly: a floor, a wall, and a
 // card in front of it.
-#include "core/render/residual_tiles.h"
-#include "core/render/warp_planes.h"
-#include "core/render/warp_renderer.h"
+#include "core/render/warp/residual_tiles.h"
+#include "core/render/warp/warp_planes.h"
+#include "core/render/warp/warp_renderer.h"
 #include "tests/gpu/gpu_test.h"
 
 #include <algorithm>

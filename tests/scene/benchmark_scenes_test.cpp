@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/bundle.h"
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include <cmath>
 #include <filesystem>

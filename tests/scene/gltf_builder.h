@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include <cstddef>
 #include <filesystem>

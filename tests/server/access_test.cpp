@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tokens, roles, certificates and the rule about listening, without a server.
-#include "certificate_authority.h"
 #include "core/base/error.h"
 #include "server/access/access_watch.h"
 #include "server/access/listening_rule.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <filesystem>
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the server fits a session to its connection: the ladder, and the session that climbs it.
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
 

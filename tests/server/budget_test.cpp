@@ -2,7 +2,7 @@
 // What sessions of one peer share, and what a session does when it is used up.
 #include "server/session/quality_rungs.h"
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
 #include <thread>

@@ -3,7 +3,7 @@
 
 #include "core/base/guarded.h"
 #include "server/camera/own_cameras.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -14,7 +14,7 @@
 namespace fieldcast::test {
 
 /// Makes synthetic cameras for OwnCameras, and knows which of them there are.
-class Workshop {
+class CameraFactory {
 public:
     /// No call waits longer; beyond, the test fails instead of hanging.
     static constexpr std::chrono::seconds kPatience{20};
@@ -70,17 +70,17 @@ private:
         std::set<std::thread::id> threads;
     };
     struct Camera {
-        Workshop& workshop;
+        CameraFactory& factory;
         std::unique_ptr<SyntheticChannel> channel;
         ~Camera() {
             const feed::Feed* const feed = channel->feed().get();
             channel.reset(); // stops and joins
             {
-                auto state = workshop.state_.lock();
+                auto state = factory.state_.lock();
                 state->living.erase(feed);
                 state->threads.insert(std::this_thread::get_id());
             }
-            workshop.changed_.notify_all();
+            factory.changed_.notify_all();
         }
     };
 
@@ -92,7 +92,7 @@ private:
             changed_.notify_all();
             state.wait(changed_, [](const State& s) { return !s.is_shut; });
             if (state->fails) {
-                throw std::runtime_error("the workshop is out of memory");
+                throw std::runtime_error("the factory is out of memory");
             }
             state->living.emplace(place.feed.get(), std::move(place.used));
             state->most_living = std::max(state->most_living, static_cast<int>(state->living.size()));
@@ -117,13 +117,13 @@ inline feed::ChannelInfo own_info(const std::string& name = "own") {
 }
 
 /// Such a channel. A frame takes 1 ms and 4 ms per megapixel of views.
-inline std::shared_ptr<feed::Feed> own_channel(camera::OwnCameras& cameras, Workshop& workshop,
+inline std::shared_ptr<feed::Feed> own_channel(camera::OwnCameras& cameras, CameraFactory& factory,
                                                const std::string& name = "own") {
     const feed::ChannelInfo info = own_info(name);
     return std::make_shared<feed::Feed>(
         info, cameras.opener({.info = info,
                               .cost = {.source_ms = 1.0, .ms_per_view_megapixel = 4.0},
-                              .make = workshop.maker()}));
+                              .make = factory.maker()}));
 }
 
 } // namespace fieldcast::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/grpc_server.h"
-#include "server_client.h"
-#include "server_synthetic.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

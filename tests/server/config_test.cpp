@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server's --config file: same names as the flags, flags win, every mistake with its place.
 #include "server/ops/flags.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 

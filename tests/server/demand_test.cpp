@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For whom a channel makes frames: for those who could take them.
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <atomic>
 #include <gtest/gtest.h>

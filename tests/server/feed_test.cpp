@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/feed/frame_interval.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <atomic>
 #include <cmath>

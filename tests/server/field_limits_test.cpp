@@ -2,11 +2,11 @@
 // What a Configure may hold, and what the largest one costs.
 #include "server/session/field_limits.h"
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
+#include <functional>
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>
-#include <functional>
 #include <set>
 
 namespace fieldcast::session {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients that misbehave: each is detected, counted by reason and closed, and a client that behaves notices nothing.
-#include "http_client.h"
-#include "relay.h"
 #include "server/session/credits.h"
-#include "served_channel.h"
-#include "session_count.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/server/relay.h"
+#include "tests/server/served_channel.h"
+#include "tests/server/session_count.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/ops/flags.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include "core/base/error.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits per peer and in total, over gRPC.
-#include "served_channel.h"
 #include "server/service/download_table.h"
 #include "server/service/session_table.h"
+#include "tests/server/served_channel.h"
 
 #include <future>
 #include <grpcpp/generic/generic_stub.h>

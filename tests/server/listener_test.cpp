@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The accept loop and the server's question to itself, with callers and answers of the test's own.
-#include "no_descriptors.h"
-#include "polling.h"
 #include "server/listener/acceptor.h"
 #include "server/listener/self_probe.h"
+#include "tests/fixtures/polling.h"
+#include "tests/server/no_descriptors.h"
 
 #include <cerrno>
 #include <condition_variable>

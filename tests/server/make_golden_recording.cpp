@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Usage: make_golden_recording FILE. Writes the recording that server_golden_recording_test.cpp reads.
-#include "server_synthetic_recording.h"
+#include "tests/server/synthetic_recording.h"
 
 int main(int argc, char** argv) {
     using namespace fieldcast;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/session/negotiate.h"
 #include "server/session/quality_rungs.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <cmath>
 #include <gmock/gmock.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the gRPC edge says about itself: counters, gauges, health.
-#include "no_descriptors.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
-#include "polling.h"
-#include "server_client.h"
-#include "server_synthetic.h"
+#include "tests/fixtures/polling.h"
+#include "tests/server/no_descriptors.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who gets a camera of its own, and that nothing is left of those that have gone.
-#include "polling.h"
-#include "server_workshop.h"
+#include "tests/fixtures/polling.h"
+#include "tests/server/camera_factory.h"
 
 #include <filesystem>
 #include <fstream>
@@ -11,7 +11,7 @@ namespace fieldcast::camera {
 namespace {
 
 using namespace std::chrono_literals;
-using test::Workshop;
+using test::CameraFactory;
 using testing::HasSubstr;
 
 constexpr feed::CameraLoad kTenFrames{.frames_per_second = 10.0F, .view_pixels = 1'000'000};
@@ -135,29 +135,29 @@ protected:
     std::string page() { return registry_.page().text(); }
 
     metrics::Registry registry_;
-    Workshop workshop_;
+    CameraFactory factory_;
     OwnCameras cameras_{{.max_cameras = 3, .max_ms_per_second = 1000.0}, registry_};
-    std::shared_ptr<feed::Feed> channel_ = test::own_channel(cameras_, workshop_);
+    std::shared_ptr<feed::Feed> channel_ = test::own_channel(cameras_, factory_);
 };
 
 TEST_F(OwnCamerasTest, EveryFeedHasACameraOfItsOwnUntilItCloses) {
     feed::OwnFeed first = open();
     feed::OwnFeed second = open();
-    ASSERT_TRUE(workshop_.wait_until_living(2));
+    ASSERT_TRUE(factory_.wait_until_living(2));
     EXPECT_NE(first.feed(), second.feed());
     EXPECT_NE(first.feed()->steering(), second.feed()->steering());
     EXPECT_EQ(channel_->steering(), nullptr) << "nobody steers the channel itself";
     const auto feed = first.feed();
     first.close();
-    ASSERT_TRUE(workshop_.wait_until_living(1));
-    EXPECT_FALSE(workshop_.has(feed));
-    EXPECT_TRUE(workshop_.has(second.feed()));
+    ASSERT_TRUE(factory_.wait_until_living(1));
+    EXPECT_FALSE(factory_.has(feed));
+    EXPECT_TRUE(factory_.has(second.feed()));
 }
 
 TEST_F(OwnCamerasTest, ACameraCountsUntilItIsGone) {
-    workshop_.shut();
+    factory_.shut();
     feed::OwnFeed first = open();
-    ASSERT_TRUE(workshop_.wait_until_begun(1));
+    ASSERT_TRUE(factory_.wait_until_begun(1));
     feed::OwnFeed second = open();
     feed::OwnFeed third = open();
     EXPECT_FALSE(channel_->opener()->open({.frames_per_second = 1.0F}).has_value());
@@ -165,21 +165,21 @@ TEST_F(OwnCamerasTest, ACameraCountsUntilItIsGone) {
     EXPECT_FALSE(channel_->opener()->open({.frames_per_second = 1.0F}).has_value());
     second.close(); // it has not begun
     feed::OwnFeed fourth = open();
-    EXPECT_EQ(workshop_.begun(), 1);
+    EXPECT_EQ(factory_.begun(), 1);
     EXPECT_THAT(page(), HasSubstr("fieldcast_own_cameras{channel=\"own\"} 3"));
     EXPECT_THAT(page(), HasSubstr("fieldcast_own_cameras_refused_total{channel=\"own\",reason=\"cameras\"} 2"));
-    workshop_.open();
-    ASSERT_TRUE(workshop_.wait_until_begun(3));
-    EXPECT_TRUE(workshop_.wait_until_living(2));
-    EXPECT_EQ(workshop_.begun(), 3) << "the second one was never made";
+    factory_.open();
+    ASSERT_TRUE(factory_.wait_until_begun(3));
+    EXPECT_TRUE(factory_.wait_until_living(2));
+    EXPECT_EQ(factory_.begun(), 3) << "the second one was never made";
 }
 
 TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
     {
         const feed::OwnFeed warm_up = open();
-        ASSERT_TRUE(workshop_.wait_until_living(1));
+        ASSERT_TRUE(factory_.wait_until_living(1));
     }
-    ASSERT_TRUE(workshop_.wait_until_living(0));
+    ASSERT_TRUE(factory_.wait_until_living(0));
     const Holdings before = Holdings::now();
     constexpr int kOpens = 400;
     int refused = 0;
@@ -196,48 +196,48 @@ TEST_F(OwnCamerasTest, ChurnLeavesNothingBehind) {
                 came.notify_all();
             });
             ASSERT_TRUE(subscription.has_value());
-            EXPECT_TRUE(has_frame.lock().wait_until(came, std::chrono::steady_clock::now() + Workshop::kPatience,
+            EXPECT_TRUE(has_frame.lock().wait_until(came, std::chrono::steady_clock::now() + CameraFactory::kPatience,
                                                     [](bool has) { return has; }));
             subscription->end();
             own->close();
-            EXPECT_TRUE(workshop_.wait_until_living(0)); // the last callback has returned
+            EXPECT_TRUE(factory_.wait_until_living(0)); // the last callback has returned
         }
     }
     EXPECT_LT(refused, kOpens) << "only while others were being ended";
-    ASSERT_TRUE(workshop_.wait_until_living(0));
-    EXPECT_TRUE(test::comes_true([&] { return Holdings::now().threads <= before.threads; }, Workshop::kPatience))
+    ASSERT_TRUE(factory_.wait_until_living(0));
+    EXPECT_TRUE(test::comes_true([&] { return Holdings::now().threads <= before.threads; }, CameraFactory::kPatience))
         << "a joined thread leaves the list of the kernel a moment later, but not these: " << Holdings::now().threads;
     EXPECT_LE(Holdings::now().descriptors, before.descriptors);
-    EXPECT_EQ(workshop_.threads().size(), 1U) << "made and ended by one thread";
-    EXPECT_FALSE(workshop_.threads().contains(std::this_thread::get_id())) << "which is not ours";
+    EXPECT_EQ(factory_.threads().size(), 1U) << "made and ended by one thread";
+    EXPECT_FALSE(factory_.threads().contains(std::this_thread::get_id())) << "which is not ours";
 }
 
 TEST_F(OwnCamerasTest, ACameraThatCannotBeMadeFailsAlone) {
     feed::OwnFeed good = open();
-    ASSERT_TRUE(workshop_.wait_until_living(1));
-    workshop_.fail_from_now_on();
+    ASSERT_TRUE(factory_.wait_until_living(1));
+    factory_.fail_from_now_on();
     feed::OwnFeed bad = open();
-    EXPECT_TRUE(test::comes_true([&] { return bad.feed()->has_failed(); }, Workshop::kPatience));
+    EXPECT_TRUE(test::comes_true([&] { return bad.feed()->has_failed(); }, CameraFactory::kPatience));
     EXPECT_FALSE(good.feed()->has_failed());
     EXPECT_FALSE(channel_->has_failed());
 }
 
 TEST_F(OwnCamerasTest, TheChannelWaitsAsLongAsItsSlowestCamera) {
-    workshop_.shut();
+    factory_.shut();
     feed::OwnFeed own = open();
     const auto now = std::chrono::steady_clock::now();
     EXPECT_EQ(channel_->waiting_time(now + 5s), 0ns) << "nobody has subscribed";
     const auto subscription = feed::Feed::subscribe(own.feed(), feed::PlaneSelection{}, [](const feed::FramePtr&) {});
     EXPECT_GE(channel_->waiting_time(now + 5s), 4s);
-    workshop_.open();
+    factory_.open();
 }
 
 TEST_F(OwnCamerasTest, WhatFramesCostDecidesAboutTheNext) {
     feed::OwnFeed first = open();
     feed::OwnFeed second = open();
-    ASSERT_TRUE(workshop_.wait_until_living(2));
+    ASSERT_TRUE(factory_.wait_until_living(2));
     for (int i = 0; i < 60; ++i) {
-        workshop_.tell_cost(480ms); // of a second each
+        factory_.tell_cost(480ms); // of a second each
     }
     const auto third = channel_->opener()->open({.frames_per_second = 1.0F});
     ASSERT_FALSE(third.has_value());

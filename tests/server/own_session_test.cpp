@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions on a channel that gives each of them a camera.
-#include "polling.h"
 #include "server/session/session.h"
-#include "server_workshop.h"
+#include "tests/fixtures/polling.h"
+#include "tests/server/camera_factory.h"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Kind = v1::ServerMessage;
-using test::Workshop;
+using test::CameraFactory;
 using testing::HasSubstr;
 
 const feed::Steerer kAnn{.name = "ann", .right = feed::SteeringRight::kSteer};
@@ -70,10 +70,10 @@ protected:
     TimePoint now_ = std::chrono::steady_clock::now(); // as for who leaves a camera
     std::shared_ptr<Budget> peer_cameras_; ///< null: no limit
     metrics::Registry registry_;
-    Workshop workshop_;
+    CameraFactory factory_;
     camera::OwnCameras cameras_{{.max_cameras = 2, .max_ms_per_second = 100.0}, registry_};
-    std::shared_ptr<feed::Feed> own_ = test::own_channel(cameras_, workshop_);
-    std::shared_ptr<feed::Feed> other_ = test::own_channel(cameras_, workshop_, "other");
+    std::shared_ptr<feed::Feed> own_ = test::own_channel(cameras_, factory_);
+    std::shared_ptr<feed::Feed> other_ = test::own_channel(cameras_, factory_, "other");
     std::shared_ptr<feed::Feed> fixed_ = std::make_shared<feed::Feed>(test::synthetic_info("fixed"));
 };
 
@@ -91,7 +91,7 @@ TEST_F(OwnSession, EverybodySteersSomethingElse) {
     steer(*bob, 5.0F);
     EXPECT_EQ(feed_of(*ann)->steering()->sample()->world_from_camera[3].x, 3.0F);
     EXPECT_EQ(feed_of(*bob)->steering()->sample()->world_from_camera[3].x, 5.0F);
-    EXPECT_TRUE(workshop_.wait_until_living(2));
+    EXPECT_TRUE(factory_.wait_until_living(2));
 }
 
 TEST_F(OwnSession, NobodyHasToShowASignOfLife) {
@@ -150,23 +150,23 @@ TEST_F(OwnSession, TheCameraGoesWithTheChannelOrTheSession) {
     const auto bob = open();
     configure(*ann, "own");
     configure(*bob, "own");
-    ASSERT_TRUE(workshop_.wait_until_living(2));
+    ASSERT_TRUE(factory_.wait_until_living(2));
     EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
-    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*bob)}));
+    EXPECT_TRUE(factory_.wait_until_only({feed_of(*bob)}));
     bob->end();
-    ASSERT_TRUE(workshop_.wait_until_living(0));
+    ASSERT_TRUE(factory_.wait_until_living(0));
 }
 
 TEST_F(OwnSession, FromOneChannelToTheNext) {
     const auto ann = open();
     configure(*ann, "own");
     request(*ann);
-    ASSERT_TRUE(workshop_.wait_until_living(1));
+    ASSERT_TRUE(factory_.wait_until_living(1));
     const auto before = feed_of(*ann);
     EXPECT_EQ(configure(*ann, "other").configured().channel(), "other");
     EXPECT_EQ(next(*ann).steering_released().reason(), v1::STEERING_RELEASE_REASON_RECONFIGURED);
     EXPECT_NE(feed_of(*ann), before);
-    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*ann)}));
+    EXPECT_TRUE(factory_.wait_until_only({feed_of(*ann)}));
     request(*ann);
 }
 
@@ -175,14 +175,14 @@ TEST_F(OwnSession, FromOneChannelToTheNextWhenEverythingIsTaken) {
     const auto bob = open();
     configure(*ann, "own", 50.0F); // 50 of 100 ms per second
     configure(*bob, "own", 45.0F);
-    ASSERT_TRUE(workshop_.wait_until_living(2));
+    ASSERT_TRUE(factory_.wait_until_living(2));
     const auto of_bob = feed_of(*bob);
     EXPECT_EQ(configure(*bob, "other", 60.0F).message_case(), Kind::kRefused) << "more than it gives back";
     EXPECT_EQ(feed_of(*bob), of_bob);
     EXPECT_EQ(configure(*bob, "other", 45.0F).configured().channel(), "other");
     EXPECT_EQ(configure(*ann, "other", 50.0F).configured().channel(), "other");
-    EXPECT_TRUE(workshop_.wait_until_only({feed_of(*ann), feed_of(*bob)}));
-    EXPECT_EQ(workshop_.most_living(), 2) << "memory of the device never held three";
+    EXPECT_TRUE(factory_.wait_until_only({feed_of(*ann), feed_of(*bob)}));
+    EXPECT_EQ(factory_.most_living(), 2) << "memory of the device never held three";
 }
 
 TEST_F(OwnSession, APeerHasNoMoreThanItsShare) {
@@ -207,10 +207,10 @@ TEST_F(OwnSession, APeerHasNoMoreThanItsShare) {
 TEST_F(OwnSession, WhoIsSentAwayLosesItsCameraAtOnce) {
     const auto ann = open();
     configure(*ann, "own");
-    ASSERT_TRUE(workshop_.wait_until_living(1));
+    ASSERT_TRUE(factory_.wait_until_living(1));
     ann->go_away("enough", now_);
     EXPECT_EQ(next(*ann).message_case(), Kind::kGoingAway);
-    EXPECT_TRUE(workshop_.wait_until_living(0));
+    EXPECT_TRUE(factory_.wait_until_living(0));
 }
 
 TEST_F(OwnSession, OnlyWhoMaySteerGetsOne) {
@@ -219,14 +219,14 @@ TEST_F(OwnSession, OnlyWhoMaySteerGetsOne) {
     EXPECT_EQ(refused.refused().reason(), v1::REFUSAL_REASON_ROLE_TOO_LOW);
     EXPECT_THAT(refused.refused().message(), HasSubstr("role steer"));
     EXPECT_EQ(configure(*vera, "fixed").message_case(), Kind::kConfigured);
-    EXPECT_EQ(workshop_.begun(), 0);
+    EXPECT_EQ(factory_.begun(), 0);
 }
 
 TEST_F(OwnSession, AFailedCameraEndsItsSession) {
-    workshop_.fail_from_now_on();
+    factory_.fail_from_now_on();
     const auto ann = open();
     configure(*ann, "own");
-    ASSERT_TRUE(test::comes_true([&] { return feed_of(*ann)->has_failed(); }, Workshop::kPatience));
+    ASSERT_TRUE(test::comes_true([&] { return feed_of(*ann)->has_failed(); }, CameraFactory::kPatience));
     ann->on_tick(now_);
     const v1::ServerMessage message = next(*ann);
     ASSERT_EQ(message.message_case(), Kind::kGoingAway);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recorded_form.h"
 #include "server/session/negotiate.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame_time.h"
 #include "server/recording/recorded_form.h"
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
 #include "server/session/recorded.h"
-#include "server_synthetic.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/frame_time.h"
+#include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "relay.h"
+#include "tests/server/relay.h"
 
-#include "http_client.h"
+#include "tests/fixtures/http_client.h"
 
 #include <array>
 #include <netinet/in.h>

@@ -6,8 +6,8 @@
 #include "server/recording/recorder.h"
 #include "server/recording/replay.h"
 #include "server/session/session.h"
-#include "server_synthetic_recording.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/synthetic_recording.h"
 
 #include <gtest/gtest.h>
 #include <thread>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording behind the real service: the server's whole path without Vulkan.
 #include "core/lightfield/frame_rate.h"
-#include "polling.h"
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
-#include "server_client.h"
-#include "server_synthetic_recording.h"
-#include "test_folder.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic_recording.h"
 
 #include <atomic>
 #include <future>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // TLS, certificates of clients, tokens and their replacement, against a server with a synthetic channel.
-#include "certificate_authority.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
-#include "polling.h"
 #include "server/access/listening_rule.h"
 #include "server/service/grpc_server.h"
-#include "server_client.h"
-#include "server_synthetic.h"
-#include "session_count.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
+#include "tests/server/session_count.h"
+#include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
 #include <thread>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "served_channel.h"
+#include "tests/server/served_channel.h"
 
-#include "polling.h"
+#include "tests/fixtures/polling.h"
 
 namespace fieldcast::test {
 

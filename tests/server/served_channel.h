@@ -3,8 +3,8 @@
 
 #include "core/base/guarded.h"
 #include "server/service/grpc_server.h"
-#include "server_client.h"
-#include "server_synthetic.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic.h"
 
 #include <condition_variable>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server_client.h"
+#include "tests/server/server_client.h"
 
 #include <grpcpp/impl/codegen/client_unary_call.h>
 

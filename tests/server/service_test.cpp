@@ -2,8 +2,8 @@
 #include "core/wire/frame_assembler.h"
 #include "server/service/grpc_server.h"
 #include "server/session/credits.h"
-#include "server_client.h"
-#include "server_synthetic.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
 #include <thread>

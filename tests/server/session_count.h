@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "polling.h"
 #include "server/service/grpc_server.h"
+#include "tests/fixtures/polling.h"
 
 namespace fieldcast::test {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What callers of the HTTP edge cannot do to others, or to the end of the process: with silence, with slowness, with
 // numbers.
-#include "no_descriptors.h"
-#include "web_fixture.h"
+#include "tests/server/no_descriptors.h"
+#include "tests/server/web_fixture.h"
 
 #include <atomic>
 #include <condition_variable>

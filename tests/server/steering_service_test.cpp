@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients that steer one camera, over gRPC: refused, waiting, handing over, taking, falling silent, leaving.
 #include "server/service/grpc_server.h"
-#include "server_client.h"
-#include "server_synthetic.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
+#include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who steers a camera: the lease against a clock of its own, and what a session makes of it.
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <algorithm>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include "core/wire/convert.h"
 

@@ -3,7 +3,7 @@
 
 #include "server/recording/recorded_form.h"
 #include "server/recording/recording_writer.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 namespace fieldcast::test {
 

@@ -3,9 +3,9 @@
 //     synthetic_server PORT_FILE
 // 30 frames a second of 64x36 pixels until INT or TERM; 36 views as they are (--codec raw) are 60 Mbit/s.
 #include "core/base/stop_signals.h"
-#include "frame_time.h"
 #include "server/service/grpc_server.h"
-#include "server_synthetic.h"
+#include "tests/server/frame_time.h"
+#include "tests/server/synthetic.h"
 
 #include <fstream>
 #include <iostream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // When frames were where, as a session sees it.
 #include "server/session/session.h"
-#include "server_synthetic.h"
+#include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
 

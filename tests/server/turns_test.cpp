@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that share a device: who gets how much of it, on a simulated clock and with threads.
-#include "frame_time.h"
 #include "server/channel/device_turns.h"
+#include "tests/server/frame_time.h"
 
 #include <array>
 #include <atomic>

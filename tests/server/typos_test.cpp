@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What strangers type: every mistake is found before anything starts, and told as flag, problem and what to do.
 #include "server/ops/flags.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "certificate_authority.h"
-#include "http_client.h"
 #include "server/web/endpoint.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 

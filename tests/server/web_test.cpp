@@ -2,7 +2,7 @@
 // What the HTTP edge answers, and to whom.
 #include "core/base/error.h"
 #include "server/web/connection_table.h"
-#include "web_fixture.h"
+#include "tests/server/web_fixture.h"
 
 #include <thread>
 

@@ -2,9 +2,9 @@
 // Changes on a running stream, with both programs. Every frame of the server is the same here (--clock frames --frames
 // 1: the first frame again and again), so the picture of a new epoch must be the one that a fresh client with that
 // configuration gets, to the last bit: the files are compared byte by byte.
-#include "polling.h"
 #include "running_server.h"
-#include "test_folder.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <csignal>
 #include <fstream>

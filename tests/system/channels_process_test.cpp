@@ -2,8 +2,8 @@
 // Both programs with a camera that a client steers, and with two channels that share the device.
 #include "core/base/guarded.h"
 #include "running_server.h"
-#include "server_client.h"
-#include "test_folder.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

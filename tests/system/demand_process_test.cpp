@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A server that renders: what nobody could take is not rendered, and what nobody wants any more is given back.
 #include "running_server.h"
-#include "server_client.h"
+#include "tests/server/server_client.h"
 
 #include <gmock/gmock.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real server when descriptors are short: it serves on when it has some again, and ends with a code of its own when
 // it is deaf for good. Replays a recording, so it needs no device.
-#include "http_client.h"
-#include "program.h"
-#include "test_folder.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <csignal>
 #include <gmock/gmock.h>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Through a real Envoy with deploy/envoy.yaml: gRPC over HTTP/2 and gRPC-Web, with the stream lengths and half-closes
 // that proxies truncate when either side ends a stream before the other.
-#include "certificate_authority.h"
-#include "http_client.h"
-#include "polling.h"
-#include "program.h"
-#include "served_channel.h"
-#include "session_count.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/served_channel.h"
+#include "tests/server/session_count.h"
 
 #include <csignal>
 #include <filesystem>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What operators look at, on a server that renders: /metrics, --health, logs.
-#include "certificate_authority.h"
-#include "http_client.h"
-#include "polling.h"
 #include "running_server.h"
-#include "server_client.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
 
 #include <algorithm>
 #include <csignal>

@@ -2,7 +2,7 @@
 // A server whose clients have a camera each: they see different things at the same moment, and no more of them than
 // fit.
 #include "running_server.h"
-#include "server_client.h"
+#include "tests/server/server_client.h"
 
 #include <cmath>
 #include <cstdio>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The programs beside a server that means ill: what it says reaches no terminal as a command.
-#include "client_fake_server.h"
 #include "core/wire/convert.h"
-#include "program.h"
-#include "test_folder.h"
+#include "tests/client/fake_server.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/async_generic_service.h>

@@ -4,8 +4,8 @@
 // sides": same binary, driver and device, lossless planes, no view history).
 #include "core/gpu/device.h"
 #include "core/image/image_file.h"
-#include "program.h"
-#include "test_folder.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <algorithm>
 #include <chrono>

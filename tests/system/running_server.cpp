@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "running_server.h"
 
-#include "http_client.h"
-#include "polling.h"
-#include "test_folder.h"
+#include "tests/fixtures/http_client.h"
+#include "tests/fixtures/polling.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <atomic>
 

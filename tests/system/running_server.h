@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "program.h"
+#include "tests/fixtures/program.h"
 
 #include <filesystem>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Both programs with TLS and tokens, and what they write down about them: nothing secret.
-#include "certificate_authority.h"
-#include "program.h"
-#include "test_folder.h"
+#include "tests/fixtures/certificate_authority.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <csignal>
 #include <gmock/gmock.h>

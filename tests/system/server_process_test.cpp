@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server as a process: exit codes, port file, first frames of a rendered scene, signals.
 #include "core/wire/frame_assembler.h"
-#include "program.h"
-#include "server_client.h"
-#include "test_folder.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
+#include "tests/server/server_client.h"
 
 #include <csignal>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server as a process: a signal while it starts ends it, whatever it is at.
-#include "program.h"
-#include "test_folder.h"
+#include "tests/fixtures/program.h"
+#include "tests/fixtures/test_folder.h"
 
 #include <csignal>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/codec/plane_codec.h"
 #include "core/codec/light_curve.h"
+#include "core/codec/plane_codec.h"
 
 #include "tests/wire/test_planes.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/accumulation.h"
+#include "core/render/denoise/accumulation.h"
 #include "shaders/shared/bmfr.h"
 
 namespace fieldcast::render {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/illumination_filter.h"
+#include "core/render/denoise/illumination_filter.h"
 
 namespace fieldcast::render {
 

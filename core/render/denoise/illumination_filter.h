@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/bmfr.h"
-#include "core/render/punctual_filter.h"
-#include "core/render/svgf.h"
+#include "core/render/denoise/bmfr.h"
+#include "core/render/denoise/punctual_filter.h"
+#include "core/render/denoise/svgf.h"
 
 namespace fieldcast::render {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/svgf.h"
+#include "core/render/denoise/svgf.h"
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"

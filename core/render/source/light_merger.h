@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gpu/recorder.h"
-#include "core/render/source_surfaces.h"
+#include "core/render/source/source_surfaces.h"
 
 namespace fieldcast::render {
 

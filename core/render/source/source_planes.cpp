@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 
 #include "core/lightfield/normal_precision.h"
 

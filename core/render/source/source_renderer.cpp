@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/source_renderer.h"
+#include "core/render/source/source_renderer.h"
 
 #include "core/render/camera_record.h"
+#include "core/render/denoise/illumination_filter.h"
 #include "core/render/frame_parameters.h"
-#include "core/render/illumination_filter.h"
 #include "core/render/kernels.h"
-#include "core/render/light_merger.h"
-#include "core/render/source_surfaces.h"
+#include "core/render/source/light_merger.h"
+#include "core/render/source/source_surfaces.h"
 
 namespace fieldcast::render {
 

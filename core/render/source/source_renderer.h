@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 #include "core/scene/gpu_scene.h"
 
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "core/gpu/recorder.h"
 #include "core/render/group_list.h"
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 #include "core/scene/gpu_scene.h"
 
 namespace fieldcast::render {

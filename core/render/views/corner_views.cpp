@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/corner_views.h"
+#include "core/render/views/corner_views.h"
 
 #include <algorithm>
 

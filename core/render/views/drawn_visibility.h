@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gpu/raster_pipeline.h"
-#include "core/render/view_visibility.h"
+#include "core/render/views/view_visibility.h"
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a GridRenderer keeps after a frame: memory, and what can be asked about the last one.
-#include "core/render/grid_renderer_state.h"
-#include "core/render/visibility_depth.h"
+#include "core/render/views/grid_renderer_state.h"
+#include "core/render/warp/visibility_depth.h"
 
 #include <algorithm>
 #include <glm/gtc/packing.hpp>

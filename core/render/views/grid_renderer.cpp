@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/grid_renderer.h"
+#include "core/render/views/grid_renderer.h"
 
 #include "core/render/camera_record.h"
-#include "core/render/corner_views.h"
 #include "core/render/frame_parameters.h"
-#include "core/render/grid_renderer_state.h"
 #include "core/render/kernels.h"
+#include "core/render/views/corner_views.h"
+#include "core/render/views/grid_renderer_state.h"
 
 namespace fieldcast::render {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/lightfield/views.h"
-#include "core/render/hole_filler.h"
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 #include "core/render/view_request.h"
+#include "core/render/views/hole_filler.h"
 #include "core/scene/gpu_scene.h"
 
 #include <memory>

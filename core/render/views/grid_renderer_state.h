@@ -3,11 +3,11 @@
 
 #include "core/gpu/recorder.h"
 #include "core/render/frame_parameters.h"
-#include "core/render/grid_renderer.h"
-#include "core/render/hole_filler.h"
-#include "core/render/reflections.h"
-#include "core/render/view_history.h"
-#include "core/render/view_visibility.h"
+#include "core/render/views/grid_renderer.h"
+#include "core/render/views/hole_filler.h"
+#include "core/render/views/reflections.h"
+#include "core/render/views/view_history.h"
+#include "core/render/views/view_visibility.h"
 
 namespace fieldcast::render {
 

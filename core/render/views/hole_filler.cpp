@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/hole_filler.h"
+#include "core/render/views/hole_filler.h"
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"

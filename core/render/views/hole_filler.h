@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/gpu/recorder.h"
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 #include "core/scene/gpu_scene.h"
 #include "shaders/shared/holes.h"
 

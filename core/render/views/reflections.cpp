@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/reflections.h"
+#include "core/render/views/reflections.h"
 
 #include "core/render/kernels.h"
 

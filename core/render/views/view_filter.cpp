@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/view_filter.h"
+#include "core/render/views/view_filter.h"
 
 #include "core/base/error.h"
 #include "core/render/frame_parameters.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/illumination_filter.h"
-#include "core/render/source_planes.h"
+#include "core/render/denoise/illumination_filter.h"
+#include "core/render/source/source_planes.h"
 #include "core/render/view_request.h"
 
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/view_history.h"
+#include "core/render/views/view_history.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/hole_filler.h"
-#include "core/render/view_filter.h"
+#include "core/render/views/hole_filler.h"
+#include "core/render/views/view_filter.h"
 
 #include <memory>
 #include <span>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/view_visibility.h"
+#include "core/render/views/view_visibility.h"
 
-#include "core/render/drawn_visibility.h"
 #include "core/render/kernels.h"
+#include "core/render/views/drawn_visibility.h"
 #include "shaders/shared/frame.h"
 
 namespace fieldcast::render {

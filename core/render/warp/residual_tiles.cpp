@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/residual_tiles.h"
+#include "core/render/warp/residual_tiles.h"
 
 #include "core/base/error.h"
 

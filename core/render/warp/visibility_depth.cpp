@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/visibility_depth.h"
+#include "core/render/warp/visibility_depth.h"
 
 #include "shaders/shared/scene.h"
 

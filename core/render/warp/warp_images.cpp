@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/warp_images.h"
+#include "core/render/warp/warp_images.h"
 
 #include "core/render/kernels.h"
 

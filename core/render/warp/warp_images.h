@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/gpu/recorder.h"
-#include "core/render/source_planes.h"
+#include "core/render/source/source_planes.h"
 #include "shaders/shared/warp.h"
 
 namespace fieldcast::render {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/warp_planes.h"
+#include "core/render/warp/warp_planes.h"
 
-#include "core/render/residual_tiles.h"
+#include "core/render/warp/residual_tiles.h"
 
 #include <algorithm>
 #include <cmath>

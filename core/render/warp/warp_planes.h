@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/render/grid_renderer.h"
-#include "core/render/source_renderer.h"
-#include "core/render/warp_renderer.h"
+#include "core/render/source/source_renderer.h"
+#include "core/render/views/grid_renderer.h"
+#include "core/render/warp/warp_renderer.h"
 
 namespace fieldcast::render {
 

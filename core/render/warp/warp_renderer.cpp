@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/render/warp_renderer.h"
+#include "core/render/warp/warp_renderer.h"
 
 #include "core/render/frame_parameters.h"
 #include "core/render/kernels.h"
-#include "core/render/warp_images.h"
+#include "core/render/warp/warp_images.h"
 
 namespace fieldcast::render {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_accessors.h"
+#include "core/scene/gltf/accessors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_animations.h"
+#include "core/scene/gltf/animations.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_buffer_views.h"
+#include "core/scene/gltf/buffer_views.h"
 
 #include <cstdint>
 #include <meshoptimizer.h>

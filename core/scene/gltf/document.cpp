@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_document.h"
+#include "core/scene/gltf/document.h"
 
 #include "core/base/error.h"
 #include "core/scene/uri.h"

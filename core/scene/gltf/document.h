@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_json.h"
+#include "core/scene/gltf/json.h"
 #include "core/scene/load_report.h"
 #include "core/scene/scene_files.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_extensions.h"
+#include "core/scene/gltf/extensions.h"
 
-#include "core/scene/gltf_json.h"
+#include "core/scene/gltf/json.h"
 #include "core/scene/scene_files.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_images.h"
+#include "core/scene/gltf/images.h"
 
 #include "core/image/image_file.h"
 

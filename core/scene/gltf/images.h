@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_buffer_views.h"
+#include "core/scene/gltf/buffer_views.h"
 #include "core/scene/scene.h"
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_json.h"
+#include "core/scene/gltf/json.h"
 
 #include "core/base/error.h"
 #include "core/scene/load_report.h"

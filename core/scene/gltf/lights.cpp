@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_lights.h"
+#include "core/scene/gltf/lights.h"
 
-#include "core/scene/gltf_numbers.h"
+#include "core/scene/gltf/numbers.h"
 
 #include <glm/gtc/constants.hpp>
 

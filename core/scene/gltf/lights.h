@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_nodes.h"
+#include "core/scene/gltf/nodes.h"
 
 #include <vector>
 

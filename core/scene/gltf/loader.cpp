@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_loader.h"
+#include "core/scene/gltf/loader.h"
 
 #include "core/base/error.h"
 #include "core/scene/bundle.h"
 #include "core/scene/environment.h"
-#include "core/scene/studio.h"
-#include "core/scene/gltf_animations.h"
-#include "core/scene/gltf_images.h"
-#include "core/scene/gltf_lights.h"
-#include "core/scene/gltf_materials.h"
-#include "core/scene/gltf_meshes.h"
+#include "core/scene/gltf/animations.h"
+#include "core/scene/gltf/images.h"
+#include "core/scene/gltf/lights.h"
+#include "core/scene/gltf/materials.h"
+#include "core/scene/gltf/meshes.h"
 #include "core/scene/scene_extent.h"
+#include "core/scene/studio.h"
 
 #include <algorithm>
 #include <new>

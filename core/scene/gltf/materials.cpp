@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_materials.h"
+#include "core/scene/gltf/materials.h"
 
-#include "core/scene/gltf_numbers.h"
+#include "core/scene/gltf/numbers.h"
 
 #include <algorithm>
 #include <cmath>

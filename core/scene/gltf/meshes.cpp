@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_meshes.h"
+#include "core/scene/gltf/meshes.h"
 
-#include "core/scene/gltf_numbers.h"
+#include "core/scene/gltf/numbers.h"
 #include "core/scene/mesh_normals.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_accessors.h"
-#include "core/scene/gltf_nodes.h"
+#include "core/scene/gltf/accessors.h"
+#include "core/scene/gltf/nodes.h"
 
 #include <vector>
 

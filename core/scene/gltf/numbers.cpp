@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/scene/gltf_numbers.h"
+#include "core/scene/gltf/numbers.h"
 
 namespace fieldcast::scene {
 

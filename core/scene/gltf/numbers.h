@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/scene/gltf_document.h"
+#include "core/scene/gltf/document.h"
 
 #include <glm/glm.hpp>
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Types and ranges of glTF properties, by name: within glTF 2.0 and the extensions we know, a name means one thing
 // nearly everywhere, so one table replaces a schema.
-#include "core/scene/gltf_json.h"
+#include "core/scene/gltf/json.h"
 #include "core/scene/load_report.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every index and range of a glTF file. tinygltf checks none of them.
-#include "core/scene/gltf_document.h"
+#include "core/scene/gltf/document.h"
 
 #include <concepts>
 #include <optional>

@@ -11,7 +11,7 @@ FLAG_SOURCES = {
                "server/ops/security_flags.cpp", "server/ops/camera_flags.cpp", "server/ops/job_flags.cpp"],
     "client": ["client/options.cpp"],
     "load": ["client/load_options.cpp"],
-    "bench": sorted(p.as_posix() for p in pathlib.Path("bench").glob("*.cpp")),
+    "bench": sorted(p.as_posix() for p in pathlib.Path("bench").rglob("*.cpp")),
 }
 FIRST_DOCUMENTS = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/architecture.md", "docs/lightfield.md",
                    "docs/protocol.md", "docs/operations.md", "docs/security.md", "docs/benchmarks.md", "docs/known_artefacts.md"]

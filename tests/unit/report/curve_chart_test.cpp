@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/report/curve_chart.h"
+#include "report/curve_chart.h"
 
 #include "tests/unit/report/html_check.h"
 

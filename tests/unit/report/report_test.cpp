@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
-#include "core/report/chart.h"
-#include "core/report/page.h"
-#include "core/report/picture.h"
+#include "report/chart.h"
+#include "report/page.h"
+#include "report/picture.h"
 #include "tests/unit/report/html_check.h"
 
 #include <fstream>

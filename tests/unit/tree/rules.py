@@ -54,8 +54,8 @@ FORBIDDEN_NAMES = {"utils", "util", "common", "helpers", "helper", "misc", "mana
 # Tests wait for events with a deadline. Files that may let time pass all the same, and why.
 SLEEPERS = {
     "tests/hostile/waiting.py": "measures others meanwhile, and looks at what has no event; for all scenarios",
-    "tests/system/frame_time.h": "stands for the time that a frame takes on a device which is not there",
-    "tests/system/polling.h": "looks at what has no event, again and again until a deadline; for all tests",
+    "tests/server/frame_time.h": "stands for the time that a frame takes on a device which is not there",
+    "tests/fixtures/polling.h": "looks at what has no event, again and again until a deadline; for all tests",
 }
 SLEEP = re.compile(r"\b(sleep|sleep_for|sleep_until|usleep|nanosleep)\s*\(|this_thread::(yield)|\bpoll\(nullptr"
                    r"|\bselect\(\[\], \[\], \[\]|\bfrom (time|asyncio) import .*\bsleep\b")
@@ -137,7 +137,7 @@ def sleep_problems(path, lines):
     found = [number for number, line in enumerate(lines, 1) if SLEEP.search(line)]
     if path in SLEEPERS:
         return [] if found else [f"{path}: does not sleep any more, take it off the list"]
-    return [f"{path}:{number}: a test waits for an event with a deadline, see tests/system/polling.h"
+    return [f"{path}:{number}: a test waits for an event with a deadline, see tests/fixtures/polling.h"
             for number in found]
 
 

@@ -73,7 +73,7 @@ class Rules(unittest.TestCase):
         self.assertEqual([], self.includes("core/scene/bvh.cpp", "core/gpu/buffer.h"))
         self.assertEqual([], self.includes("core/image/quilt.h", "core/base/error.h"))
         self.assertEqual([], self.includes("core/image/quilt.cpp", "core/image/quilt.h"))
-        self.assertEqual([], self.includes("server/main.cpp", "core/render/grid_renderer.h"))
+        self.assertEqual([], self.includes("server/main.cpp", "core/render/views/grid_renderer.h"))
         self.assertEqual([], self.includes("client/play/play.cpp", "client/sink/sink.h"))
         self.assertIn("core/gpu may not include core/lightfield",
                       self.includes("core/gpu/buffer.h", "core/lightfield/camera.h")[0])
@@ -114,8 +114,8 @@ class Rules(unittest.TestCase):
             self.assertTrue(rules.sleep_problems("tests/bench/a.py", [text]), text)
         for text in ("Without subscribers a channel sleeps.", "poll(ends.data(), 2, 20);", "EXPECT_TRUE(sleeps(feed));"):
             self.assertEqual([], rules.sleep_problems("tests/system/a.cpp", [text]))
-        self.assertEqual([], rules.sleep_problems("tests/system/polling.h", [f"    {'sleep_for'}(kLookInterval);"]))
-        self.assertTrue(rules.sleep_problems("tests/system/polling.h", ["nothing"]), "the list holds who needs it only")
+        self.assertEqual([], rules.sleep_problems("tests/fixtures/polling.h", [f"    {'sleep_for'}(kLookInterval);"]))
+        self.assertTrue(rules.sleep_problems("tests/fixtures/polling.h", ["nothing"]), "the list holds who needs it only")
 
     def test_function_lengths(self):
         text = ["namespace a {", "struct B {", "    int c;", "};", "int f(int a,", "      int b) {", "    return a;", "}",
