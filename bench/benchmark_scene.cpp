@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Member `key` of a description, if `is_good` likes it.
+/// Member `key` of a description. Throws UserError if `is_good` rejects it.
 template <class IsGood>
 const json& member(const std::filesystem::path& file, const json& description, const char* key, IsGood is_good,
                    const char* expected) {
@@ -60,7 +60,7 @@ BenchmarkScene find_benchmark_scene(const std::string& name_or_file, const std::
     if (!std::filesystem::exists(description)) {
         const std::string names = join(benchmark_scene_names(folder));
         throw UserError("--scene " + name_or_file + ": expected a glTF file or " +
-                        (names.empty() ? "a name; names are found in the repository's root" : names));
+                        (names.empty() ? "a name (run this in the repository's root to use names)" : names));
     }
     return read_description(description);
 }
@@ -79,7 +79,7 @@ std::vector<std::string> benchmark_scene_names(const std::filesystem::path& fold
 
 std::string describe_scene_option() {
     const std::string names = join(benchmark_scene_names());
-    return "glTF file" + (names.empty() ? std::string() : ", or " + names + " (bench/scenes, fixed exposure)");
+    return "glTF file" + (names.empty() ? std::string(".") : ", or " + names + " (bench/scenes, fixed exposure).");
 }
 
 } // namespace fieldcast::bench

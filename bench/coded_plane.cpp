@@ -8,7 +8,7 @@ namespace fieldcast::bench {
 
 namespace {
 
-/// Of this thread: other work on the machine does not count.
+/// CPU time of this thread; other work on the machine does not count.
 double processor_ms() {
     std::timespec time{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -47,7 +47,7 @@ CodedPlane code_plane(const Plane& plane, const Coding& coding, const Neighbours
     const std::vector<codec::RowBand> bands = codec::strip_bands(plane.height_px);
     std::vector<std::vector<std::byte>> strips(bands.size());
     std::vector<std::vector<std::byte>> base_strips(bands.size());
-    for (std::size_t i = 0; base != nullptr && i < bands.size(); ++i) { // a receiver has them
+    for (std::size_t i = 0; base != nullptr && i < bands.size(); ++i) { // a receiver has the base's bands
         base_strips[i] = codec::encode_strip(*base, bands[i], {.encoding = coding.encoding});
     }
     CodedPlane coded;

@@ -10,31 +10,31 @@ namespace fieldcast::bench {
 
 /// One way of encoding planes.
 struct Coding {
-    std::string name; ///< as tables show it
+    std::string name; ///< name in tables
     codec::Encoding encoding{};
-    bool uses_key_frame = false; ///< strips may refer to the frame before
+    bool uses_key_frame = false; ///< strips may refer to the previous frame
     bool uses_base = false;      ///< strips are predicted from the base view
 };
 
-/// RAW, ZSTD_FILTERED, the same with key frames, and of each quality JPEG and H264, alone and predicted.
+/// RAW, ZSTD_FILTERED, ZSTD_FILTERED with key frames, and JPEG and H264 at each quality, with and without prediction.
 std::vector<Coding> all_codings(const std::vector<std::uint32_t>& qualities);
 
-/// A plane that was encoded and decoded.
+/// The result of encoding and decoding a plane.
 struct CodedPlane {
     Plane decoded;
     double bytes = 0.0;     ///< of all strips, headers included
-    double encode_ms = 0.0; ///< processor time of one thread
+    double encode_ms = 0.0; ///< CPU time of one thread
     double decode_ms = 0.0;
 };
 
-/// What a plane may be coded from, for codings that use it; null: nothing.
+/// Reference planes for codings that use them; null: none.
 struct Neighbours {
-    const Plane* before = nullptr; ///< the same plane of the frame before
+    const Plane* before = nullptr; ///< the same plane of the previous frame
     const Plane* base = nullptr;   ///< of the base view
 };
 
-/// Encoding a base again is part of the time that prediction takes, as it is for a server. Throws std::logic_error if a
-/// lossless coding changed a pixel.
+/// Encodes and decodes a plane. The time of prediction includes encoding the base again, as on a server. Throws
+/// std::logic_error if a lossless coding changed a pixel.
 CodedPlane code_plane(const Plane& plane, const Coding& coding, const Neighbours& neighbours, float exposure);
 
 } // namespace fieldcast::bench

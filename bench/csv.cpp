@@ -52,6 +52,15 @@ std::string csv_cell(const nlohmann::ordered_json& value) {
     return quoted(value.is_string() ? value.get<std::string>() : value.dump());
 }
 
+std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& first, const nlohmann::ordered_json& rows) {
+    std::vector<nlohmann::ordered_json> lines;
+    for (const nlohmann::ordered_json& row : rows) {
+        lines.push_back(first);
+        lines.back().update(row);
+    }
+    return lines;
+}
+
 void write_csv(const std::string& file, const std::vector<std::string>& columns,
                const std::vector<nlohmann::ordered_json>& rows) {
     std::vector<std::string> cells;

@@ -3,10 +3,10 @@
 
 namespace fieldcast::bench {
 
-inline constexpr int kInterrupted = 130; ///< exit code, as shells give it to programs that Ctrl-C ended
+inline constexpr int kInterrupted = 130; ///< exit code that shells use for programs ended by Ctrl-C
 
-/// While it lives, the first Ctrl-C (or SIGTERM) asks for an end at the next good moment; the second one ends at once.
-/// One at a time, in the main thread.
+/// During its lifetime, the first Ctrl-C (or SIGTERM) requests an end and the second one ends the process at once. Only
+/// one object at a time, in the main thread.
 class InterruptGuard {
 public:
     InterruptGuard();
@@ -22,7 +22,7 @@ private:
     Handler before_terminate_;
 };
 
-/// Thrown where work ends early because of Ctrl-C; the message says what is left. Leads to exit code kInterrupted.
+/// Thrown when work ends early because of Ctrl-C. Contains the state of the results; leads to exit code kInterrupted.
 struct Interrupted {
     const char* what_is_left;
 };

@@ -13,7 +13,7 @@
 
 namespace fieldcast::bench {
 
-/// A scene as benchmarks look at it: its camera, a lattice of views, a moment in time.
+/// A scene for benchmarks with its camera, a lattice of views and a moment in time.
 class LightFieldScene {
 public:
     struct Options {
@@ -26,14 +26,14 @@ public:
         Size size{};
     };
 
-    /// Throws UserError if the scene has no camera or the grid cannot be had.
+    /// Throws UserError if the scene has no camera or the grid is not valid.
     LightFieldScene(const gpu::Device& device, const Options& options);
 
-    /// Places everything as it is in frame `frame` of 30 per second; frame 0 is a cut.
+    /// Poses the scene for frame `frame` at 30 frames per second; frame 0 is a cut.
     void pose(std::uint32_t frame);
     static std::int64_t time_of_frame_ns(std::uint32_t frame);
 
-    /// From now on `grid()` has so many views, of the same lattice.
+    /// Changes the number of views of `grid()`; the lattice stays the same.
     void choose_grid(std::uint32_t rows, std::uint32_t cols);
 
     Camera source() const; ///< in the current pose
@@ -56,15 +56,15 @@ private:
 /// Renders the frames of a scene one after the other with one set of settings.
 class LightFieldRun {
 public:
-    /// `settings.exposure` 0: automatic, from the first frame. Renders that frame if so or if `has_guard_band`.
+    /// `settings.exposure` 0: automatic, from the first frame. Renders that frame in this case and if `has_guard_band`.
     LightFieldRun(const gpu::Device& device, LightFieldScene& scene, const RenderSettings& settings,
                   bool has_guard_band, std::vector<LatticePosition> source_positions = middle_source());
 
-    /// Frame number `frame` of the sequence, with the scene as it is posed now. Stage times are in the result's header.
+    /// Renders frame number `frame` with the current pose of the scene. Stage times are in the header of the result.
     Views render(std::uint32_t frame, const std::vector<LatticePosition>& positions);
 
     const render::SourcePlanes& source() const { return *source_; } ///< of the last render()
-    Plane total_light() { return source_renderer_.total_light(); } ///< likewise
+    Plane total_light() { return source_renderer_.total_light(); } ///< of the last render()
     const render::GridRenderer& grid_renderer() const { return grid_renderer_; }
     const FrameHeader& header() const { return header_; }
     const GuardBandChoice& guard_band() const { return guard_band_; }
@@ -81,10 +81,10 @@ private:
     const render::SourcePlanes* source_ = nullptr;
 };
 
-/// `wanted` if it is given (> 0), else that of the benchmark scene, else automatic: renders the first frame.
+/// The exposure: `wanted` if it is > 0, else that of the benchmark scene, else automatic, for which it renders a frame.
 float choose_exposure(const gpu::Device& device, LightFieldScene& scene, float wanted, const BenchmarkScene& known);
 
-/// `--holes` of a benchmark. Throws UserError.
+/// Parses `--holes` of a benchmark. Throws UserError.
 HoleFilling parse_holes(const std::string& text, const ViewGrid& grid);
 
 } // namespace fieldcast::bench

@@ -27,8 +27,8 @@ int start(int argc, char** argv) {
     fieldcast::bench::add_report_command(app);
     fieldcast::bench::add_compare_command(app);
     app.footer(
-        "\n`./fieldcast bench flip FOLDER` adds FLIP to what `quality --out FOLDER` wrote. docs/measurements/metrics.md says\n"
-        "what all the numbers mean.");
+        "\n`./fieldcast bench flip FOLDER` adds FLIP to the results of `quality --out FOLDER`.\n"
+        "docs/measurements/metrics.md explains all numbers.");
     CLI11_PARSE(app, argc, argv);
     return 0;
 }

@@ -5,7 +5,7 @@
 
 namespace fieldcast::bench {
 
-/// Which picture of a run: a frame, and a view of it.
+/// Identifies a picture of a run: a frame and one of its views.
 struct PictureId {
     std::uint32_t frame = 0;
     LatticePosition position;
@@ -13,7 +13,7 @@ struct PictureId {
     bool operator==(const PictureId&) const = default;
 };
 
-/// Row and column of a view in the 6×6 grid, in which all results name views.
+/// Row and column of a view in the 6×6 grid; all results name views this way.
 struct ViewIndex {
     std::int32_t row = 0;
     std::int32_t col = 0;

@@ -6,14 +6,14 @@
 
 namespace fieldcast::bench {
 
-/// "less than a minute", "7 min", "2 h 10 min".
+/// A duration as text: "less than a minute", "7 min", "2 h 10 min".
 std::string describe_duration(std::chrono::seconds duration);
 
-/// A line on standard error that says how far long work is and when it will be done: rewritten in place on a terminal,
-/// else a new line every half a minute.
+/// Prints progress and remaining time of long work to standard error: one line that is rewritten on a terminal, else a
+/// new line every 30 s.
 class Progress {
 public:
-    /// `what` is done in `total` pieces of about equal length.
+    /// `what` names the work, which has `total` pieces of about equal length.
     Progress(std::string what, double total);
     ~Progress();
     Progress(const Progress&) = delete;

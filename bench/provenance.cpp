@@ -14,7 +14,7 @@ namespace fieldcast::bench {
 
 namespace {
 
-/// Model and number of cores as Linux names them.
+/// Model of the processor and number of hardware threads, as Linux reports them.
 std::string processor() {
     std::ifstream stream("/proc/cpuinfo");
     std::string model = "unknown processor";

@@ -7,11 +7,11 @@
 
 namespace fieldcast::bench {
 
-/// What every result names, so that numbers can be told apart later: processor, device with driver, commit ("-dirty" if
-/// the tree had changes when it was built), command line, UTC time.
+/// The origin of a result: processor, device with driver, commit ("-dirty" if the tree had changes when it was built),
+/// command line, UTC time. Every result contains it.
 nlohmann::ordered_json provenance(const gpu::Device& device);
 
-/// The same of a benchmark that uses no device.
+/// The same for a benchmark that uses no device.
 nlohmann::ordered_json provenance();
 
 } // namespace fieldcast::bench

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A column of a table for people.
+/// A column of a printed table.
 struct Column {
     const char* title;
     const char* key;
@@ -37,7 +37,7 @@ void print_columns(std::ostream& stream, const std::vector<std::pair<std::string
     stream << '\n';
 }
 
-/// Part `part` of those rows that have it.
+/// The part `part` of all rows that have it.
 std::vector<std::pair<std::string, Json>> parts(const Json& rows, const char* part) {
     std::vector<std::pair<std::string, Json>> found;
     for (const auto& [name, row] : rows.items()) {
@@ -100,13 +100,20 @@ void print_quality_table(std::ostream& stream, const Json& result) {
     }
 }
 
-Json csv_origin(const Json& result) {
+Json csv_origin_with_size(const Json& result) {
     return {{"machine", result["processor"].get<std::string>() + "; " + result["device"].get<std::string>()},
             {"commit", result["commit"]},
             {"command", result["command"]},
             {"scene", result["scene"]},
-            {"protocol", result["protocol"].get<std::string>() + " " + result["size"].get<std::string>() +
-                             ", references of " + result["reference_samples"].dump() + " samples"}};
+            {"size", result["size"]}};
+}
+
+Json csv_origin(const Json& result) {
+    Json origin = csv_origin_with_size(result);
+    origin.erase("size");
+    origin["protocol"] = result["protocol"].get<std::string>() + " " + result["size"].get<std::string>() +
+                         ", references of " + result["reference_samples"].dump() + " samples";
+    return origin;
 }
 
 const std::vector<std::string>& quality_columns() {
@@ -128,7 +135,7 @@ std::vector<Json> quality_csv_rows(const Json& result) {
         for (const char* part : {"temporal", "light_field"}) {
             if (row.contains(part)) {
                 Json values = row[part];
-                values.erase("rmse"); // of this part only; the row has its own
+                values.erase("rmse"); // the row has its own value
                 values.erase("ssim");
                 line.update(values);
             }

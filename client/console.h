@@ -7,11 +7,12 @@
 
 namespace fieldcast::client {
 
-/// Where a run stands, on standard error: one line that is rewritten on a terminal, else a line every few seconds.
+/// Prints the progress of a run to standard error: a terminal shows one line that is rewritten at most 10 times a
+/// second; otherwise there is a new line every 3 s.
 class ProgressLine {
 public:
     ProgressLine();
-    ~ProgressLine(); ///< ends the line
+    ~ProgressLine(); ///< ends the line on a terminal
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 

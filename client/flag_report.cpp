@@ -17,7 +17,7 @@ FlagReport report_of(const CLI::App& app, const CLI::ParseError& error) {
         const CLI::Option* const option = app.get_option_no_throw(flag);
         return option == nullptr ? std::string() : option->get_type_name();
     };
-    return {flag_problem(error.get_name(), error.what(), type_of) + "\n" + app.get_name() + " --help tells the flags\n",
+    return {flag_problem(error.get_name(), error.what(), type_of) + "\n" + app.get_name() + " --help lists all flags\n",
             2};
 }
 

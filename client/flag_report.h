@@ -16,7 +16,8 @@ struct FlagReport {
     int exit_code = 0; ///< 0: help or version
 };
 
-/// Of a command line that CLI11 did not parse: the help that was asked for, or what is wrong with which flag.
+/// Text and exit code for a command line that CLI11 did not accept: the requested help or version (exit code 0), or the
+/// flag and its problem (exit code 2).
 FlagReport report_of(const CLI::App& app, const CLI::ParseError& error);
 
 } // namespace fieldcast::client

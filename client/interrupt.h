@@ -8,13 +8,13 @@
 
 namespace fieldcast::client {
 
-/// What a program of ours returns.
+/// Exit codes of fieldcast-client and fieldcast-load.
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUserError = 2;
 inline constexpr int kExitInterrupted = 130;
 
-/// Turns the first INT or TERM into a stop request; the second one ends the process at once. Made before any other
-/// thread, so that all of them inherit the blocked signals and only this one sees them.
+/// Turns the first SIGINT or SIGTERM into a stop request; the second one ends the process at once with exit code 130.
+/// Must be constructed before any other thread: later threads inherit the blocked signals, so only this one sees them.
 class Interrupt {
 public:
     Interrupt();

@@ -7,8 +7,8 @@
 
 namespace fieldcast::client {
 
-/// Where a load run stands, on standard error: a table that is rewritten on a terminal, else a line per group every few
-/// seconds.
+/// Prints the progress of a load run to standard error: a terminal shows a table that is rewritten in place; otherwise
+/// there is a line per group every 5 s.
 class LoadConsole {
 public:
     LoadConsole();
@@ -17,7 +17,7 @@ public:
 
 private:
     bool is_terminal_;
-    std::size_t lines_ = 0; ///< of the table on the terminal
+    std::size_t lines_ = 0; ///< height of the table on the terminal
     std::chrono::steady_clock::time_point next_;
 };
 

@@ -29,7 +29,7 @@ int report(const client::LoadOptions& options, const client::load::LoadResult& r
         client::load::write_hgrm(result, options.hgrm);
     }
     if (!result.has_frames()) {
-        std::fputs("fieldcast-load: nobody got a frame\n", stderr);
+        std::fputs("fieldcast-load: no client received a frame\n", stderr);
         return client::kExitFailed;
     }
     return result.holds() ? 0 : kExitMissed;
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
         return invocation.exit_code;
     }
     if (invocation.options->is_check) {
-        std::puts("the scenario is fine");
+        std::puts("the scenario is valid");
         return 0;
     }
     return run(*invocation.options);

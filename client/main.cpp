@@ -19,7 +19,7 @@ using client::kExitFailed;
 using client::kExitInterrupted;
 using client::kExitUserError;
 
-/// What went wrong may be told in words of the server, or of a scene that it sent.
+/// Prints an error. Its text may come from the server or from a scene that it sent, so it is made printable first.
 void complain(std::string_view problem) {
     constexpr std::size_t kMaxBytes = 8192; // more than any message of ours
     std::fprintf(stderr, "fieldcast-client: %s\n", printable(problem, kMaxBytes).c_str());
@@ -52,7 +52,7 @@ client::play::PlayResult play_or_fall_back(client::Options& options, const Inter
         if (!options.falls_back_to_views) {
             throw;
         }
-        log::warn("no device to make views, taking finished ones", {{"reason", error.what()}});
+        log::warn("no Vulkan device to make views; requesting finished views", {{"reason", error.what()}});
     }
     options.play.request.mode = DeliveryMode::kViews;
     if (options.play.request.adaptation) {

@@ -14,27 +14,28 @@ namespace {
 
 constexpr const char* kExamples = R"(
 Examples:
-  Nine finished views, once:
+  One frame of nine finished views:
     fieldcast-client --grid 3x3 --size 320x180 --frames 1 --out out/thin
-  Hold the scene and make 25 views on the Vulkan device of this machine:
+  Fetch the scene and make 25 views on the Vulkan device of this machine:
     fieldcast-client --mode scene --grid 5x5 --size 640x360 --frames 30 --out out/scene --write quilt,exr
   Make 36 views without the scene, from the source's colour and depth:
     fieldcast-client --mode warp --grid 6x6 --codec jpeg,zstd --frames 30
-  Thirty-six views at about an eighth of the bytes:
+  Make the server send 36 views as JPEG, at about an eighth of the bytes:
     fieldcast-client --grid 6x6 --codec jpeg,zstd --frames 30
-  A horizontal sweep for a lenticular display, with everything that can be written:
+  A horizontal sweep for a lenticular display, with all kinds of picture files:
     fieldcast-client --grid 1x45 --frames 1 --write quilt,views,contact-sheet,look-around
-  Drive the camera of a channel with --camera-control steered round what it looks at:
+  Steer the camera of a channel with --camera-control steered on an orbit round its subject:
     fieldcast-client --grid 3x3 --steer orbit:radius=2,seconds=10 --frames 100
-  Other views after three seconds, made here after six, without a new connection:
+  Change the grid after three seconds and make views here after six, on the same connection:
     fieldcast-client --grid 3x3 --change 3s:grid=5x5 --change 6s:mode=scene --frames 100
-  A server elsewhere, with the token that its operator gave out:
+  Connect to a remote server with TLS and a token from its operator:
     fieldcast-client --server https://fieldcast.example.org:50151 --token-file token.txt --frames 1
 
-Exit codes: 0 all frames shown, 1 the server or this machine failed, 2 what was asked cannot be had, 130 interrupted.
+Exit codes: 0 all frames shown, 1 the server or this machine failed, 2 the flags or the request are not valid or not
+allowed, 130 interrupted.
 )";
 
-/// What the flags say, before it is checked.
+/// The command line before it is checked.
 struct FlagText {
     std::vector<std::pair<std::string, std::string>> request; ///< keys of net::request_setters() and values
     std::vector<std::string> modes;
@@ -59,24 +60,27 @@ CLI::Option* add_setting(CLI::App& app, const std::string& flag, const std::stri
 }
 
 void add_view_flags(CLI::App& app, FlagText& text) {
-    add_setting(app, "--grid", "Views, ROWSxCOLS, at most 72 in all", text)->default_str("4x4");
-    add_setting(app, "--size", "Pixels of one view, WIDTHxHEIGHT; without it: those of the source", text);
-    add_setting(app, "--fov", "Vertical field of view, degrees; without it: the source's", text);
-    add_setting(app, "--spacing", "Metres between neighbouring views; without it: the channel's", text);
-    add_setting(app, "--convergence", "Depth of zero disparity, metres; 0: parallel cameras", text);
-    add_setting(app, "--anchor", "Where the source is in the grid: lattice or centre", text)->default_str("lattice");
-    add_setting(app, "--max-fps", "Frames per second at most, 0.1 or more; 0: the channel's", text)->default_str("0");
+    add_setting(app, "--grid", "Grid of views, ROWSxCOLS, at most 72 views.", text)->default_str("4x4");
+    add_setting(app, "--size", "Size of one view in pixels, WIDTHxHEIGHT (default: that of the source).", text);
+    add_setting(app, "--fov", "Vertical field of view in degrees (default: the source's).", text);
+    add_setting(app, "--spacing", "Distance of neighbouring views in metres (default: the channel's).", text);
+    add_setting(app, "--convergence", "Depth of zero disparity in metres; 0: parallel cameras.", text);
+    add_setting(app, "--anchor", "Position of the source view in the grid: lattice or centre.", text)
+        ->default_str("lattice");
+    add_setting(app, "--max-fps", "Largest frame rate in frames per second, 0.1 or more; 0: the channel's.", text)
+        ->default_str("0");
 }
 
 void add_plane_flags(CLI::App& app, FlagText& text) {
     add_setting(app, "--planes",
-                "Of mode scene. g-buffer: illumination, depth, normal, id, material; illumination: rebuild the rest; "
-                "total-light: the same, with one plane of illumination instead of two",
+                "Mode scene: source planes to receive. g-buffer: illumination, depth, normal, id and material; "
+                "illumination: illumination only, the client rebuilds the rest; total-light: the same with one plane "
+                "of illumination instead of two.",
                 text)
         ->default_str("g-buffer");
     add_setting(app, "--normal-bits",
-                "Of mode scene with g-buffer: 16 or 8 bits for each of the two components of a normal; 8 are a "
-                "fraction of the bytes, and turn normals by less than 1 degree",
+                "Mode scene with g-buffer: bits of each of the two components of a normal, 16 or 8. 8 bits need a "
+                "fraction of the bytes and change normals by less than 1 degree.",
                 text)
         ->default_str("16");
 }
@@ -84,87 +88,97 @@ void add_plane_flags(CLI::App& app, FlagText& text) {
 void add_mode_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
     app.add_option(
            "--mode", text.modes,
-           "views: the server makes them; scene: this machine does, with its own copy of the scene and a Vulkan "
-           "device; warp: this machine does, without the scene; scene,views or warp,views: if there is a device")
+           "Delivery mode. views: the server makes the views; scene: the client makes them with a copy of the scene "
+           "and a Vulkan device; warp: the client makes them from colour and depth, without the scene; scene,views or "
+           "warp,views: views if there is no Vulkan device.")
         ->delimiter(',')
         ->check(CLI::IsMember(words<DeliveryMode>()))
         ->default_str("views");
     add_plane_flags(app, text);
     app.add_option(
            "--codec", text.codecs,
-           "Of views, of the illumination in mode scene or of colour in mode warp, most wanted first: zstd (lossless), "
-           "raw, jpeg; of views: h264")
+           "Codecs of views, of the illumination in mode scene or of the colour in mode warp, most wanted first: zstd "
+           "(lossless), raw, jpeg, and for views also h264.")
         ->delimiter(',')
         ->check(CLI::IsMember(words<Codec>()))
         ->default_str("zstd");
-    add_setting(app, "--quality", "Of lossy codecs, 1 to 100; without it: the server's choice", text);
-    app.add_flag("--no-residual", text.no_residual, "Of mode warp: without what only the corners of the grid see");
+    add_setting(app, "--quality", "Quality of lossy codecs, 1 to 100 (default: the server's choice).", text);
+    app.add_flag("--no-residual", text.no_residual,
+                 "Mode warp: do not receive the surfaces that only the corner views of the grid see.");
     app.add_option("--adapt", text.adaptation,
-                   "Let the server send less while the connection carries less. Bounds as in "
-                   "quality=40,fps=2,height=180,grid=3x3,jpeg=on,scene=off,delay=100 (these), in this order: JPEG, "
-                   "its quality, fewer frames, smaller views, fewer views, mode scene")
+                   "Let the server reduce the stream while the connection is too slow. Optional bounds (default: "
+                   "quality=40,fps=2,height=180,grid=3x3,jpeg=on,scene=off,delay=100). The server reduces in this "
+                   "order: JPEG, JPEG quality, frame rate, size of views, number of views, mode scene.")
         ->expected(0, 1);
     app.add_option("--change", text.changes,
-                   "WHEN:KEY=VALUE,…: ask for something else on the running stream, as in 3s:grid=5x5 or "
-                   "20f:mode=scene,size=320x180; keys: grid, size, spacing, convergence, fov, anchor, mode, planes, "
-                   "codec (zstd+jpeg), quality, max-fps. May be repeated");
-    app.add_option("--device", play.device, "Of modes scene and warp: part of the Vulkan device's name");
-    app.add_option("--traversal", play.traversal, "Of mode scene: auto, bvh or rayquery")
+                   "WHEN:KEY=VALUE,…: change the request on the running stream, as in 3s:grid=5x5 or "
+                   "20f:mode=scene,size=320x180. Keys: grid, size, spacing, convergence, fov, anchor, mode, planes, "
+                   "codec (zstd+jpeg), quality, max-fps. May be repeated.");
+    app.add_option("--device", play.device, "Modes scene and warp: part of the name of the Vulkan device.");
+    app.add_option("--traversal", play.traversal, "Mode scene: ray traversal, auto, bvh or rayquery.")
         ->check(CLI::IsMember({"auto", "bvh", "rayquery"}))
         ->capture_default_str();
     app.add_option("--visibility", play.visibility,
-                   "Of mode scene, visibility method for views: rays, raster, or auto (the faster one)")
+                   "Mode scene: visibility method for views, rays, raster, or auto (the faster one).")
         ->check(CLI::IsMember({"auto", "rays", "raster"}))
         ->capture_default_str();
-    app.add_option("--cache", text.cache, "Of mode scene: folder of fetched scenes (default ~/.cache/fieldcast)");
+    app.add_option("--cache", text.cache, "Mode scene: folder of fetched scenes (default: ~/.cache/fieldcast).");
 }
 
 void add_steering_flags(CLI::App& app, FlagText& text) {
     app.add_option(
         "--steer", text.steer,
-        "Move the channel's camera: orbit:radius=METRES,seconds=SECONDS, a JSON file of timed poses, or -: one "
-        "pose a line from standard input");
-    app.add_flag("--steer-now", text.steers_now, "Fail if somebody else steers, instead of waiting for our turn");
+        "Steer the channel's camera: orbit:radius=METRES,seconds=SECONDS, a JSON file of timed poses, or - for one "
+        "pose per line from standard input.");
+    app.add_flag("--steer-now", text.steers_now,
+                 "Fail if another client is steering, instead of waiting for the camera.");
 }
 
 void add_access_flags(CLI::App& app, net::Access& access) {
-    app.add_flag("--tls", access.uses_tls, "Encrypt; also by --server https://HOST:PORT");
+    app.add_flag("--tls", access.uses_tls, "Encrypt the connection, as --server https://HOST:PORT does.");
     app.add_option("--tls-ca", access.tls_ca,
-                   "PEM file: who may have signed the server's certificate; without it: "
-                   "the authorities that this system trusts");
-    app.add_option("--tls-cert", access.tls_certificate, "PEM file: our certificate, for servers that ask for one");
-    app.add_option("--tls-key", access.tls_key, "PEM file: its private key");
-    app.add_option("--tls-name", access.tls_name, "Name in the server's certificate, if it is not the dialled one");
-    app.add_option("--token-file", access.token_file, "File with the token to show; without it: FIELDCAST_TOKEN");
+                   "PEM file of authorities for the server's certificate (default: those that this system trusts).");
+    app.add_option("--tls-cert", access.tls_certificate,
+                   "PEM file of the client certificate, if the server requires one.");
+    app.add_option("--tls-key", access.tls_key, "PEM file of the private key for --tls-cert.");
+    app.add_option("--tls-name", access.tls_name, "Name in the server's certificate (default: the host of --server).");
+    app.add_option("--token-file", access.token_file,
+                   "File with the token for the server (default: the variable FIELDCAST_TOKEN).");
 }
 
 void add_server_flags(CLI::App& app, FlagText& text, play::PlayOptions& play) {
-    app.add_option("--server", play.server.address, "HOST:PORT or https://HOST:PORT")->capture_default_str();
+    app.add_option("--server", play.server.address, "Address of the server, HOST:PORT or https://HOST:PORT.")
+        ->capture_default_str();
     add_access_flags(app, play.server.access);
-    app.add_option("--channel", play.request.channel, "Name of the channel; without it: the server's first");
-    app.add_flag("--no-reconnect", text.no_reconnect, "Fail when the server cannot be reached or goes away");
-    app.add_option("--patience", text.patience_s, "Seconds without any success after which to give up")
+    app.add_option("--channel", play.request.channel, "Name of the channel (default: the server's first).");
+    app.add_flag("--no-reconnect", text.no_reconnect,
+                 "Fail if the server cannot be reached or the connection ends, instead of reconnecting.");
+    app.add_option("--patience", text.patience_s,
+                   "Seconds of unsuccessful connection attempts after which the client gives up, 0 to 1e6.")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    app.add_option("--frames", play.frames, "Frames to show; 0: until interrupted")
+    app.add_option("--frames", play.frames, "Number of frames to show; 0: until interrupted.")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
 }
 
 void add_output_flags(CLI::App& app, FlagText& text, Options& options) {
-    app.add_option("--out", options.play.out, "Folder for the files")->capture_default_str();
-    app.add_option("--save", text.save, "last: the last frame; all: each in a folder of its own; none")
+    app.add_option("--out", options.play.out, "Folder for the files.")->capture_default_str();
+    app.add_option("--save", text.save,
+                   "Frames to write. last: the last frame; all: every frame, in a folder of its own; none.")
         ->check(CLI::IsMember({"last", "all", "none"}))
         ->capture_default_str();
-    app.add_option("--write", text.write, "What to write of a frame: quilt,views,contact-sheet,look-around,exr")
+    app.add_option("--write", text.write, "Files to write per frame: quilt,views,contact-sheet,look-around,exr.")
         ->delimiter(',')
         ->check(CLI::IsMember({"quilt", "views", "contact-sheet", "look-around", "exr"}))
         ->capture_default_str();
-    app.add_option("--json", options.json, "Write the statistics to this file");
+    app.add_option("--json", options.json, "Write the statistics to this JSON file.");
     app.add_option("--frame-log", options.play.timing_files.frame_log,
-                   "FILE.csv or .jsonl: a row per frame, from the server's pose to the display here");
-    app.add_option("--trace", options.play.timing_files.trace, "FILE.json for ui.perfetto.dev: the same as a picture");
-    app.add_flag("--verbose", options.is_verbose, "Log every frame");
+                   "FILE.csv or FILE.jsonl: one row of times per frame, from the pose on the server to the display "
+                   "here.");
+    app.add_option("--trace", options.play.timing_files.trace,
+                   "FILE.json: the times of --frame-log as a timeline for ui.perfetto.dev.");
+    app.add_flag("--verbose", options.is_verbose, "Log every frame (log level debug).");
 }
 
 bool contains(const std::vector<std::string>& words, const char* word) {
@@ -194,7 +208,7 @@ void read_access(play::ServerOptions& server) {
     access.token = token_of_environment();
 }
 
-/// Each builds on the one before.
+/// Each --change is applied to the request that the one before it left.
 void read_changes(const FlagText& text, play::PlayOptions& play) {
     for (const std::string& change : text.changes) {
         play.changes.push_back(read_change(change, play.changes.empty() ? play.request : play.changes.back().request));
@@ -233,7 +247,7 @@ void read_text(const FlagText& text, Options& options) {
     }
     read_changes(text, options.play);
     if (options.play.products.source_exr && !row_of(request.mode).needs_scene) {
-        throw UserError("--write exr: the source's planes reach this machine in --mode scene only");
+        throw UserError("--write exr needs --mode scene: other modes do not receive the planes of the source");
     }
     if (!text.steer.empty()) {
         options.play.steering = {.poses = play::read_camera_path(text.steer), .waits = !text.steers_now};
@@ -246,7 +260,8 @@ void read_text(const FlagText& text, Options& options) {
 } // namespace
 
 Invocation read_options(int argc, const char* const* argv) {
-    CLI::App app("Shows the light field of a Fieldcast server: receives or makes a grid of views and writes pictures.",
+    CLI::App app("Shows the light field of a Fieldcast server: receives or makes a grid of views and writes image "
+                 "files.",
                  "fieldcast-client");
     app.footer(kExamples);
     Options options;

@@ -7,13 +7,13 @@
 namespace fieldcast::client {
 namespace {
 
-/// Sets what `pair`, KEY=VALUE, names among `setters`.
+/// Applies `pair`, a KEY=VALUE, to `owner`; throws UserError if `setters` do not contain KEY or refuse VALUE.
 template <class Owner>
 void apply(const std::string& flag, const std::string& pair, const net::Setters<Owner>& setters, Owner& owner) {
     const std::size_t equals = pair.find('=');
     const std::string key = pair.substr(0, equals);
     if (equals == std::string::npos || !setters.contains(key)) {
-        throw UserError(flag + ": '" + pair + "' is no KEY=VALUE; keys are " + net::names_of(setters));
+        throw UserError(flag + ": '" + pair + "': expected KEY=VALUE with one of the keys " + net::names_of(setters));
     }
     const std::string problem = net::set(setters, key, pair.substr(equals + 1), owner);
     if (!problem.empty()) {
@@ -30,7 +30,7 @@ play::ChangeMoment moment_of(const std::string& flag, const std::string& text) {
         return {.frames = static_cast<std::uint64_t>(value)};
     }
     if (!is_number || (unit != "s" && unit != "ms")) {
-        throw UserError(flag + ": '" + text + "' says when; write 3s, 500ms, or 20f for a number of frames");
+        throw UserError(flag + ": '" + text + "' is not a time; write 3s, 500ms, or 20f for a number of frames");
     }
     const double milliseconds = unit == "s" ? value * 1000.0 : value;
     return {.after = std::chrono::milliseconds(static_cast<std::int64_t>(milliseconds))};

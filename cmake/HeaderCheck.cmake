@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # fieldcast_check_headers(FOLDER …): compiles each header below the folders alone, as part of `all`, with the include
-# paths of the targets of its folder. A header that needs another one included first does not compile. Left out are
-# headers that a source of the same name includes first: compiling that says the same.
+# paths of the targets of its folder. A header that needs another one included first does not compile. The check leaves
+# out headers that a source of the same name includes first, because compiling that source checks them.
 # Call it after all targets are defined; folders that are not built are left out.
 
 function(fieldcast_check_headers)
@@ -13,7 +13,8 @@ function(fieldcast_check_headers)
     endforeach()
 endfunction()
 
-# One source per header, those in subfolders without a CMakeLists.txt among them; other subfolders are checked by themselves.
+# Makes one source per header. Headers in subfolders without a CMakeLists.txt belong to the folder; other subfolders are
+# checked by themselves.
 function(_fieldcast_check_folder folder)
     get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
     get_property(children DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Interface target with the warnings every Fieldcast target is compiled with.
-# Whether they are errors stands in a file that the compiler reads, so that switching it rebuilds nothing.
+# Interface target with the warnings of every Fieldcast target.
+# A file that the compiler reads makes them errors or not, so that switching rebuilds nothing.
 if(FIELDCAST_WERROR)
     set(werror -Werror)
-    # What sanitizers add to the code lets GCC see values that are not set where there are none (its manual, "-fsanitize").
+    # Instrumented by sanitizers, code that sets all its values looks to GCC as if it did not (its manual,
+    # "-fsanitize").
     if(FIELDCAST_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
         string(APPEND werror " -Wno-error=maybe-uninitialized")
     endif()

@@ -12,8 +12,8 @@ namespace fieldcast::report {
 
 namespace {
 
-constexpr double kLabelledShare = 0.04; // of a stacked bar; less has no room for a number
-constexpr double kRoomyShare = 0.12;    // less has no room on a phone
+constexpr double kLabelledShare = 0.04; // of a stacked bar; smaller parts have no room for a number
+constexpr double kRoomyShare = 0.12;    // smaller parts have no room on a phone
 
 std::string percent(double share) {
     return fixed(100.0 * share, 2) + "%";

@@ -8,17 +8,17 @@
 
 namespace fieldcast::report {
 
-// Charts are inline SVG. Places along the x axis are percentages, so charts fill any width and their letters keep their
+// Charts are inline SVG. Places along the x axis are percentages, so charts fill any width and their text keeps its
 // size. Colours are those of the page's style sheet (style.h), `series` 0 … 7 of them.
 
 /// One bar of a bar chart.
 struct Bar {
     std::string label;
-    std::optional<double> value; ///< none: there is nothing to show, which is not 0
-    bool is_highlighted = false; ///< what the reader came to see
+    std::optional<double> value; ///< none: no value, which differs from 0
+    bool is_highlighted = false; ///< emphasised
 };
 
-/// Horizontal bars from 0, labelled with their values. `note` says what is good: "less is better".
+/// Horizontal bars from 0, labelled with their values. `note` explains the values: "less is better".
 struct BarChart {
     std::string title;
     std::string note{};
@@ -74,7 +74,7 @@ struct HeatMap {
 };
 Markup heat_map(const HeatMap& map);
 
-/// Several side by side, from the least to the most of all their values.
+/// Several heat maps side by side, coloured from the smallest to the largest of all their values.
 Markup heat_maps(std::vector<HeatMap> maps);
 
 } // namespace fieldcast::report

@@ -7,7 +7,7 @@
 namespace fieldcast::report {
 namespace {
 
-// The plot is a drawing of its own, stretched over the card: 1000 × 1000 units between these edges.
+// The plot is a nested drawing, stretched over the card: 1000 × 1000 units between these edges.
 constexpr double kTopPx = 14.0;
 constexpr double kBottomPx = 176.0;
 constexpr double kLeftPercent = 12.0;

@@ -12,11 +12,11 @@ namespace fieldcast::report {
 struct Table {
     std::vector<std::string> titles;
     std::vector<std::vector<std::string>> rows;
-    std::size_t highlighted = ~std::size_t{0}; ///< row the reader came to see
+    std::size_t highlighted = ~std::size_t{0}; ///< emphasised row
 };
 Markup table(const Table& table);
 
-/// Names and what they stand for.
+/// A list of names and their meanings.
 Markup definitions(const std::vector<std::pair<std::string, std::string>>& entries);
 
 Markup paragraph(const std::string& content);
@@ -24,10 +24,11 @@ Markup paragraph(const std::string& content);
 /// Charts beside each other where there is room.
 Markup side_by_side(const std::vector<Markup>& figures);
 
-/// One self-contained HTML file: asks for nothing beyond itself, light and dark, for screens of any size and paper.
+/// One self-contained HTML file. It loads nothing else, has light and dark colours, and fits screens of any size and
+/// paper.
 class Page {
 public:
-    /// `lead`: what the reader should know after one sentence.
+    /// `lead`: a summary in one sentence.
     Page(std::string title, std::string lead);
 
     void add_section(const std::string& heading, const Markup& content);

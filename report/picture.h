@@ -16,8 +16,8 @@ struct Crop {
     bool operator==(const Crop&) const = default;
 };
 
-/// Where `errors` are largest: the window of at most `width` × `height` with the largest summed square, among those
-/// that lie half a window apart.
+/// The window of at most `width` × `height` in which the summed square of `errors` is largest, among those that lie
+/// half a window apart.
 Crop worst_crop(const image::RgbF32& errors, std::uint32_t width, std::uint32_t height);
 
 image::RgbF32 cropped(const image::RgbF32& image, const Crop& crop);
@@ -33,7 +33,7 @@ struct Picture {
     std::string label;
     std::string numbers; ///< small, below the label
     image::RgbF32 display;
-    bool begins_row = false; ///< where they stand beside each other
+    bool begins_row = false; ///< starts a new row where pictures stand beside each other
 };
 
 /// Pictures of one size: a viewer that shows one of them at a time in the same place, chosen by tabs (or arrow keys),

@@ -5,10 +5,10 @@
 #include "core/base/stop_signals.h"
 #include "server/channel/channel_list.h"
 #include "server/channel/offline_recording.h"
+#include "server/command_line/flags.h"
+#include "server/command_line/port_file.h"
 #include "server/listener/descriptor.h"
 #include "server/metrics/process_metrics.h"
-#include "server/ops/flags.h"
-#include "server/ops/port_file.h"
 #include "server/service/grpc_server.h"
 #include "server/service/health_probe.h"
 #include "server/session/frame_timings.h"
@@ -29,23 +29,23 @@ using Clock = std::chrono::steady_clock;
 constexpr int kOk = 0;
 constexpr int kMachineFailed = 1;
 constexpr int kUserError = 2;
-constexpr int kDeaf = 3; // a supervisor starts it again
+constexpr int kDeaf = 3; // a supervisor restarts the server
 constexpr int kInterrupted = 130;
 
 constexpr std::chrono::milliseconds kPollInterval{100};
-constexpr std::chrono::milliseconds kStartPollInterval{20}; // also what a start takes longer than it needs
+constexpr std::chrono::milliseconds kStartPollInterval{20}; // also the largest delay that it adds to a start
 constexpr std::chrono::seconds kDrainLimit{8}; // the spread of GoingAway, its deadline, and some room
 
 constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8"; // of metrics::Page
 
-/// What the process says about itself, whatever it serves.
+/// Adds metrics of the process: its version, memory, processor time, threads and descriptors.
 void collect_process(metrics::Page& page) {
-    page.add_gauge({"fieldcast_build_info", "1; the version stands in the label."}, {{"version", FIELDCAST_VERSION}},
+    page.add_gauge({"fieldcast_build_info", "Always 1, with the version as label."}, {{"version", FIELDCAST_VERSION}},
                    1.0);
     metrics::add_process_metrics(page);
 }
 
-/// What the address of the metrics answers.
+/// Pages of the metrics endpoint.
 std::vector<web::Route> metrics_routes(metrics::Registry& registry) {
     const auto page = [&registry](const web::Request&) {
         return web::Answer{.content_type = kMetricsType, .body = registry.page().text()};
@@ -57,10 +57,10 @@ std::vector<web::Route> metrics_routes(metrics::Registry& registry) {
             {.path = "/", .role = access::Role::kAdmin, .get = index}};
 }
 
-/// /metrics, if it was asked for, and its port file.
+/// The metrics endpoint and its port file, if --metrics-listen is given.
 class MetricsServer {
 public:
-    MetricsServer(const ops::Config& config, const access::Gate& gate, metrics::Registry& registry)
+    MetricsServer(const config::Config& config, const access::Gate& gate, metrics::Registry& registry)
         : collector_(registry.on_collect(collect_process)) {
         if (!config.metrics_listen) {
             return;
@@ -77,11 +77,11 @@ public:
 private:
     metrics::Collector collector_;
     std::optional<web::Endpoint> endpoint_;
-    std::optional<ops::PortFile> port_file_;
+    std::optional<command_line::PortFile> port_file_;
 };
 
-/// Every frame of every channel, for clients or not, goes to the files that were asked for.
-void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing::Recorder& recorder) {
+/// Records the timings of every frame of every channel, with or without clients.
+void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing::TimingRecorder& recorder) {
     for (const auto& feed : feeds) {
         feed->observe([&recorder, name = feed->info().name](const feed::FramePtr& frame) {
             recorder.add(session::made_frame(name, *frame));
@@ -89,13 +89,13 @@ void record_frames(const std::vector<std::shared_ptr<feed::Feed>>& feeds, timing
     }
 }
 
-/// Why the server ends: what clients are told, and the exit code.
+/// Why the server ends: the reason for clients, and the exit code.
 struct Ending {
     const char* reason;
     int exit_code;
 };
 
-/// Until a signal, until a channel fails, or until nobody new gets in.
+/// Waits for a signal, a failed channel, or a port that no longer answers.
 Ending serve(const StopSignals& signals, const std::vector<std::shared_ptr<feed::Feed>>& feeds,
              const service::GrpcServer& server) {
     const auto has_failed = [](const std::shared_ptr<feed::Feed>& feed) { return feed->has_failed(); };
@@ -110,7 +110,7 @@ Ending serve(const StopSignals& signals, const std::vector<std::shared_ptr<feed:
     return {.reason = "the server is shutting down", .exit_code = kOk};
 }
 
-/// Until every client has gone, a second signal, or the limit.
+/// Drains until all clients have left, a second signal, or the time limit.
 void drain(const StopSignals& signals, service::GrpcServer& server, const std::string& reason) {
     server.begin_drain(reason);
     const auto deadline = Clock::now() + kDrainLimit;
@@ -123,13 +123,14 @@ void drain(const StopSignals& signals, service::GrpcServer& server, const std::s
     log::info("drained", {{"sessions", server.session_count()}});
 }
 
-/// Everything between the configuration and clients, in the order in which it starts.
+/// All parts of a running server, in the order in which they start.
 class Service {
 public:
     /// Ready to serve when constructed. `config` must outlive it.
-    explicit Service(const ops::Config& config)
-        : recorder_(config.timing_files.any() ? std::make_unique<timing::Recorder>(config.timing_files) : nullptr),
-          channels_(config, *registry_),
+    explicit Service(const config::Config& config)
+        : recorder_(config.timing_files.any() ? std::make_unique<timing::TimingRecorder>(config.timing_files)
+                                              : nullptr),
+          channels_(config.rendering, *registry_),
           server_(config.listen, observed_feeds(), config.limits, config.security,
                   {.registry = registry_, .recorder = recorder_.get()}),
           metrics_server_(config, server_.gate(), *registry_) {}
@@ -146,34 +147,34 @@ private:
     }
 
     const std::shared_ptr<metrics::Registry> registry_ = std::make_shared<metrics::Registry>();
-    const std::unique_ptr<timing::Recorder> recorder_; ///< before the channels: outlives all that tell it something
+    const std::unique_ptr<timing::TimingRecorder> recorder_; ///< before the channels, so that it outlives them
     const channel::ChannelList channels_;
     service::GrpcServer server_;
     const MetricsServer metrics_server_;
 };
 
-/// Starts in a thread of its own, while this one waits for signals: the first one ends the process, whatever the start
-/// is at (reading a scene, compiling kernels, a frame on the device). Nobody is served yet, so nothing is cut off.
-std::unique_ptr<Service> start_unless_stopped(const ops::Config& config, const StopSignals& signals) {
+/// Starts the service in a thread of its own, while this thread waits for signals. The first signal ends the process at
+/// any point of the start (reading a scene, compiling kernels, rendering a frame). There are no clients yet.
+std::unique_ptr<Service> start_unless_stopped(const config::Config& config, const StopSignals& signals) {
     std::packaged_task<std::unique_ptr<Service>()> start([&config] { return std::make_unique<Service>(config); });
     auto started = start.get_future();
     const std::jthread thread(std::move(start));
     while (started.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
         if (signals.wait(kStartPollInterval)) {
             log::info("stopped while starting", {});
-            std::_Exit(kOk); // no destructors: the other thread is at work
+            std::_Exit(kOk); // without destructors, because the other thread is still running
         }
     }
     return started.get();
 }
 
-int run(const ops::Config& config, const StopSignals& signals) {
+int run(const config::Config& config, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
     listener::raise_descriptor_limit();
     const auto service = start_unless_stopped(config, signals);
     service::GrpcServer& server = service->server();
-    std::optional<ops::PortFile> port_file;
+    std::optional<command_line::PortFile> port_file;
     if (config.port_file) {
         port_file.emplace(*config.port_file, server.port());
     }
@@ -192,25 +193,25 @@ int probe(const service::HealthQuestion& question) {
     return problem ? kMachineFailed : kOk;
 }
 
-/// Files instead of a service; several channels get a folder each.
-int render(const ops::Config& config, const ops::OfflineJob& job, const StopSignals& signals) {
+/// Renders to files instead of serving. Several channels get one folder each.
+int render(const config::Config& config, const channel::OfflineJob& job, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
-    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    const gpu::Device device({.name_contains = config.rendering.device, .validation = config.rendering.has_validation});
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
-    for (const ops::ChannelChoice& choice : config.channels) {
-        ops::OfflineJob own = job;
-        if (config.channels.size() > 1) {
+    for (const channel::ChannelChoice& choice : config.rendering.channels) {
+        channel::OfflineJob own = job;
+        if (config.rendering.channels.size() > 1) {
             own.out /= choice.name;
         }
         const auto progress = [&](const std::string& done) {
-            std::cerr << '\r' << choice.name << ": " << done << "   " << std::flush;
+            std::cerr << '\r' << printable(choice.name, 256) << ": " << done << "   " << std::flush;
             return signals.wait(std::chrono::milliseconds(0));
         };
-        const bool is_done = channel::render_offline(device, config, choice, own, progress);
+        const bool is_done = channel::render_offline(device, config.rendering, choice, own, progress);
         std::cerr << '\n';
         if (!is_done) {
-            std::cerr << "interrupted: files that were written are complete\n";
+            std::cerr << "interrupted: the files written so far are complete\n";
             return kInterrupted;
         }
         std::cout << own.out.string() << '\n';
@@ -218,27 +219,27 @@ int render(const ops::Config& config, const ops::OfflineJob& job, const StopSign
     return kOk;
 }
 
-/// A recording instead of a service.
-int record(const ops::Config& config, const ops::RecordJob& job, const StopSignals& signals) {
+/// Makes a recording instead of serving.
+int record(const config::Config& config, const channel::RecordJob& job, const StopSignals& signals) {
     log::set_format(config.log_format);
     log::set_level(config.log_level);
-    const gpu::Device device({.name_contains = config.device, .validation = config.has_validation});
+    const gpu::Device device({.name_contains = config.rendering.device, .validation = config.rendering.has_validation});
     log::info("device", {{"name", device.info().name}, {"driver", device.info().driver}});
     const auto progress = [&](const std::string& done) {
         std::cerr << '\r' << done << "   " << std::flush;
         return signals.wait(std::chrono::milliseconds(0));
     };
-    const bool is_done = channel::record_offline(device, config, job, progress);
+    const bool is_done = channel::record_offline(device, config.rendering, job, progress);
     std::cerr << '\n';
     if (!is_done) {
-        std::cerr << "interrupted: the frames so far are recorded\n";
+        std::cerr << "interrupted: the recording contains the frames so far\n";
         return kInterrupted;
     }
     std::cout << job.out.string() << '\n';
     return kOk;
 }
 
-/// What went wrong may be told in names of a scene's file.
+/// Prints an error. It may quote names from a scene file, so it is made printable first.
 void complain(std::string_view problem) {
     constexpr std::size_t kMaxBytes = 8192; // more than any message of ours
     std::cerr << "fieldcast-server: " << printable(problem, kMaxBytes) << '\n';
@@ -246,31 +247,31 @@ void complain(std::string_view problem) {
 
 int start(int argc, char** argv) {
     const StopSignals signals; // before any thread exists
-    const ops::Invocation invocation = ops::read_flags(argc, argv);
+    const command_line::Invocation invocation = command_line::read_flags(argc, argv);
     for (const std::string& problem : invocation.problems) {
         complain(problem);
     }
     std::cout << invocation.text;
     if (!invocation.problems.empty()) {
-        std::cerr << "fieldcast-server --help tells the flags\n";
+        std::cerr << "fieldcast-server --help lists all flags\n";
         return kUserError;
     }
     switch (invocation.kind) {
-    case ops::Invocation::Kind::kPrint:
+    case command_line::Invocation::Kind::kPrint:
         return kOk;
-    case ops::Invocation::Kind::kCheck:
-        std::cout << "the configuration is fine\n";
+    case command_line::Invocation::Kind::kCheck:
+        std::cout << "the configuration is valid\n";
         return kOk;
-    case ops::Invocation::Kind::kHealth:
+    case command_line::Invocation::Kind::kHealth:
         return probe(invocation.health);
-    case ops::Invocation::Kind::kRender:
+    case command_line::Invocation::Kind::kRender:
         return render(invocation.config, invocation.job, signals);
-    case ops::Invocation::Kind::kRecord:
+    case command_line::Invocation::Kind::kRecord:
         return record(invocation.config, invocation.record_job, signals);
-    case ops::Invocation::Kind::kInspect:
-        std::cout << ops::inspect(invocation.inspect_job);
+    case command_line::Invocation::Kind::kInspect:
+        std::cout << command_line::inspect(invocation.inspect_job);
         return kOk;
-    case ops::Invocation::Kind::kServe:
+    case command_line::Invocation::Kind::kServe:
         break;
     }
     return run(invocation.config, signals);

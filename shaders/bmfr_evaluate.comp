@@ -4,8 +4,9 @@
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
 // Transactions on Graphics 38(5), 2019.
 // Differs: a fit that is too far from the mean of the light around the pixel, on its surface, does not express that
-// light (edges of shadows, highlights, mirrors) and is brought back to where noise may explain the difference. Sums of
-// features go below zero and above everything, and what they add in one place they miss in another.
+// light (edges of shadows, highlights, mirrors). It is brought back to the range in which noise may explain the
+// difference. Sums of features can be negative or far too large, and an excess in one place comes with a lack in
+// another.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "shared/bmfr.h"
@@ -20,7 +21,7 @@ layout(set = 0, binding = kBmfrPreviousSpecular) uniform samplerBuffer previous_
 
 const float kLeastWeight = 0.02; // as in svgf_variance.comp
 const float kYoungFrames = 4.0;  // with a shorter history pixels look farther around
-const float kDeviations = 2.0;   // of the surroundings' mean, that a fit may be away from it
+const float kDeviations = 2.0;   // of the surroundings' mean: largest distance of a fit from it
 
 struct Light {
     vec3 diffuse;
@@ -52,7 +53,7 @@ Light evaluate(uint block, vec3 offset, vec3 normal) {
 struct Surroundings {
     Light mean;
     Light variance;
-    float count; // of equal weights that would say as much
+    float count; // of equal weights with the same variance of the mean
 };
 
 Surroundings look_around(Centre c, int radius) {
@@ -90,7 +91,7 @@ Surroundings look_around(Centre c, int radius) {
 }
 
 vec3 limited(vec3 fit, vec3 mean, vec3 variance, float count) {
-    vec3 reach = kDeviations * sqrt(variance / max(count - 1.0, 1e-3)); // a pixel alone says nothing
+    vec3 reach = kDeviations * sqrt(variance / max(count - 1.0, 1e-3)); // a single pixel sets no limit
     return clamp(fit, mean - reach, mean + reach);
 }
 
@@ -100,7 +101,7 @@ void gather(int texel, float weight, inout Light sum, inout float total) {
     total += weight;
 }
 
-// The filtered frame before, from the pixels that temporal.comp accepted. False: there are none.
+// The filtered previous frame, from the pixels that temporal.comp accepted. False if it accepted none.
 bool gather_history(uint index, int page_start, out Light history) {
     HistoryTaps taps = params.taps.at[index];
     vec2 corner = floor(taps.position - 0.5);
@@ -127,7 +128,7 @@ bool gather_history(uint index, int page_start, out Light history) {
     return total > 0.0;
 }
 
-// The block's fit, as far as the surroundings bear it out; they themselves where there is no fit.
+// The block's fit, limited by the surroundings; the mean of the surroundings where there is no fit.
 Light filtered(Centre c, uint page, uvec4 geometry, float frames) {
     uint block = block_of(c.at, page);
     Surroundings around = look_around(c, frames < kYoungFrames ? 3 : 2);

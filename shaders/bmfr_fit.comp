@@ -3,11 +3,11 @@
 // Least squares fit of a block's accumulated illumination to features of its surfaces; one group per block.
 // Follows: M. Koskela et al. Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction. ACM
 // Transactions on Graphics 38(5), 2019.
-// Differs: normal equations and their Cholesky factors instead of a QR factorisation, so that the pixels are gone
-// through once; the expectation of the noise that is added to the features there is a ridge here. Positions count from
+// Differs: normal equations and their Cholesky factors replace a QR factorisation, so that one pass over the pixels is
+// enough. A ridge replaces the noise that is added to the features there, and is its expectation. Positions count from
 // the middle of the block. Pixels without a surface do not take part, and blocks at the border are fitted to the
-// nearest 32×32 pixels of the image instead of mirrored ones. Two signals. Sums have a fixed order, whatever the size
-// of a subgroup.
+// nearest 32×32 pixels of the image instead of mirrored ones. There are two signals. Sums have a fixed order, whatever
+// the size of a subgroup.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/bmfr.h"
 
@@ -20,7 +20,7 @@ const uint kPixelsPerThread = kFitSide * kFitSide / kFitThreads;
 const uint kGram = kFitFeatures * (kFitFeatures + 1u) / 2u; // lower triangle, row by row
 const uint kColumns = 6u;                                   // red, green, blue; diffuse, specular
 const float kNoise = 1e-2;        // half width of the paper's uniform noise in the features
-const float kThinnest = 1.0 / 64; // an extent of this share of the largest one counts as no less
+const float kThinnest = 1.0 / 64; // share of the largest extent; smaller extents count as this much
 const float kFullTrust = 256.0;   // pixels: a quarter of a block
 
 shared float partial_[kFitFeatures * kColumns * kFitThreads];
@@ -63,7 +63,7 @@ void put(uint slot, vec3 value) {
     put(slot + 2u, value.z);
 }
 
-// Over all invocations, in the same order everywhere.
+// Sum over all invocations, in the same order on every device.
 float sum_of(uint slot) {
     float sum = 0.0;
     for (uint i = 0u; i < kFitThreads; ++i) {
@@ -80,7 +80,7 @@ float least_of(uint slot) {
     return least;
 }
 
-// What features are counted from, and how many pixels show a surface.
+// Means and scale of the features, and the number of pixels that show a surface.
 FitFrame measure_block(CameraRecord camera, out float count) {
     vec3 low = vec3(1e30);
     vec3 negative_high = vec3(1e30);
@@ -222,8 +222,8 @@ void sum_products(CameraRecord camera, FitFrame frame) {
     barrier();
 }
 
-// Lower Cholesky factor of the products and the ridge, in place. The ridge is what uniform noise adds to the squares in
-// expectation: its variance, of each pixel; the constant has none.
+// Computes the lower Cholesky factor of the products and the ridge, in place. The ridge is the expectation of what
+// uniform noise adds to the squares: its variance, for each pixel. The constant has no noise.
 void factorise(float count) {
     float ridge = count * kNoise * kNoise / 3.0;
     for (uint c = 0u; c < kFitFeatures; ++c) {
@@ -231,7 +231,7 @@ void factorise(float count) {
         for (uint k = 0u; k < c; ++k) {
             pivot -= gram_[gram_index(c, k)] * gram_[gram_index(c, k)];
         }
-        float diagonal = sqrt(max(pivot, 0.5 * ridge)); // exactly, it is the ridge at least
+        float diagonal = sqrt(max(pivot, 0.5 * ridge)); // without rounding, it is at least the ridge
         gram_[gram_index(c, c)] = diagonal;
         for (uint r = c + 1u; r < kFitFeatures; ++r) {
             float value = gram_[gram_index(r, c)];
@@ -284,7 +284,7 @@ void main() {
     ivec2 corner = block_corner();
     if (any(lessThanEqual(corner, ivec2(-int(kFitSide)))) ||
         any(greaterThanEqual(corner, ivec2(params.width, params.height)))) {
-        return; // beside the image
+        return; // outside the image
     }
     float count;
     FitFrame frame = measure_block(camera, count);

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Fills holes from the holes of the corner views, which are filled by now: what an inner view uncovers behind an edge,
-// the outermost view on the same side uncovers as well. Lists those that are left.
+// Fills holes from the holes of the corner views, which were filled before. If an inner view uncovers a surface behind
+// an edge, the outermost view on the same side uncovers it as well. Lists the holes that remain.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 

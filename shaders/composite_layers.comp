@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// BLEND surfaces in front of what a pixel sees, composited over it exactly per view. Their illumination is reprojected
-// from the sources' layer pages; what those do not show is path traced.
+// Composites the BLEND surfaces in front of the visible surface of a pixel, exactly per view. Their illumination is
+// reprojected from the sources' layer pages, or path traced where these lack it.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "lib/listed_path.glsl"
@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform Push { TraceListParams params; };
 
 #include "lib/reprojection.glsl"
 
-// Light that a layer's surface sends to the viewer, from the sources; false: not to be had there.
+// Light that a layer's surface sends to the viewer, from the sources; false: they do not show it.
 bool reproject_layer(Surface s, uint instance, vec3 direction, float footprint, float depth, out vec3 radiance) {
     Reused light = Reused(vec3(0.0), vec3(0.0), false, 0u);
     for (uint layer = 1u; !light.found && layer <= params.layer_count; ++layer) {

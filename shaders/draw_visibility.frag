@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Number of the triangle that a pixel sees, of solid surfaces. Of MASK materials only where the ray through the pixel's
-// centre meets a texel that passes.
+// Number of the solid triangle that a pixel sees. Triangles of MASK materials count only where the ray through the
+// pixel's centre meets a texel that passes.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
 #include "lib/surface.glsl"

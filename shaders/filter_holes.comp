@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Smooths the light of holes over the same surface: other holes of the view, and where the view's neighbouring pixels
-// were taken from the source, the source there.
+// Smooths the light of holes over the same surface. It averages the view's other holes and, where neighbouring pixels
+// of the view were taken from the source, the light in the source.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 
@@ -25,7 +25,7 @@ void gather_sources_at(CameraBuffer cameras, ivec2 step, float weight, Target ta
     }
 }
 
-// Adds the pixels around: holes to `sum`, and to `around` what the sources show of the others.
+// Adds the pixels around: holes to `sum`, and light that the sources show of the others to `around`.
 void gather_neighbours(HoleFrame frame, ViewPixel pixel, CameraRecord camera, Target target, inout HoleSum sum,
                        inout Gathered around) {
     for (int y = -kRadius; y <= kRadius; ++y) {
@@ -54,7 +54,7 @@ void main() {
     ViewPixel pixel = locate_pixel(frame.pixels.at[number], params.width, params.height);
     CameraRecord camera = frame.cameras.at[kMaxSources + pixel.view];
     Target target = stored_target(frame.surfaces.at[number], camera, vec2(pixel.x, pixel.y) + 0.5);
-    target.tangential_limit_m *= float(kRadius); // taps lie that far away by intent; the plane decides
+    target.tangential_limit_m *= float(kRadius); // taps are that far away on purpose; the plane decides
     HoleLight own = unpack_hole_light(frame.light.at[number]);
     float own_weight = max(own.frames, 1.0);
     HoleSum sum = HoleSum(own.diffuse * own_weight, own.specular * own_weight, 0.0, own_weight);

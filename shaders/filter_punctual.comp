@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Push { FilterPunctualParams params; };
 
 const float kYoungFrames = 4.0; // as in limit_history.comp
 
-// Of the mean that a texel holds, from its own history: 1/n of one frame's, α/(2 − α) once the weights no longer fall.
+// Variance of the mean in a texel, from its history: 1/n of one frame's, or α/(2 − α) once the weights no longer fall.
 float variance_of(int texel) {
     vec4 light = texelFetch(diffuse_, texel);
     if (params.has_moments == 0u) {
@@ -24,7 +24,7 @@ float variance_of(int texel) {
     return max(0.0, light.a - mean * mean) * max(1.0 / frames, params.alpha / (2.0 - params.alpha));
 }
 
-// Of the mean that a pixel holds, from its own history, or from 5×5 pixels of its surface where that is too short.
+// Variance of a pixel's mean, from its own history, or from 5×5 pixels of its surface where that is too short.
 float estimate_variance(Centre c) {
     float frames = texelFetch(length_, tap_texel(c, c.at)).x;
     bool is_young = params.has_moments != 0u && frames < kYoungFrames;
@@ -55,7 +55,7 @@ float estimate_variance(Centre c) {
     return is_young ? max(0.0, moments.y - moments.x * moments.x) / max(frames, 1.0) : variance / total;
 }
 
-// Adds what the taps around `c` that resemble it hold.
+// Adds the light of the taps around `c` that resemble it.
 void add_taps(Centre c, inout Signal signal) {
     for (int y = -params.radius; y <= params.radius; ++y) {
         for (int x = -params.radius; x <= params.radius; ++x) {

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// BLEND surfaces in front of what the pixels of a batch of views see, where drawing has marked that there are some.
+// Finds the BLEND surfaces in front of the visible surfaces of a batch of views, in the pixels that drawing has marked.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/blend_layers.glsl"
 #include "lib/camera.glsl"

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Puts the illumination of holes where filters of views read it, beside what was reprojected.
+// Copies the illumination of holes to the pages that filters of views read, beside the reprojected illumination.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 #include "lib/hole_light.glsl"

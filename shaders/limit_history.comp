@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// SVGF+ between accumulation and filter: keeps the long history where the short one agrees with it, mends pixels with
-// hardly any history from around, and estimates the variance of what was accumulated.
+// SVGF+ between accumulation and filter. It keeps the long history where the short one agrees with it, fills pixels
+// with hardly any history from their surroundings, and estimates the variance of the accumulated light.
 // Follows: the two histories and the history fix of NVIDIA's ReLAX (D. Zhdanov, Fast Denoising with Self-Stabilizing
 // Recurrent Blurs, GTC 2020). Differs: the short history is the first moment of luminance, which is there anyway.
 #extension GL_GOOGLE_include_directive : require
@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform Push { FilterParams params; };
 
 const float kYoungFrames = 4.0;
 const float kLeastWeight = 0.02;   // as in svgf_variance.comp
-const float kDeviations = 2.0;     // that the long history may be away from the short one's surroundings
+const float kDeviations = 2.0;     // largest distance of the long history from the short one's surroundings
 
 // Sums over the neighbourhood.
 struct Neighbourhood {

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Lists the groups of pixels that filters have to run on: those with a surface, and those with a pixel that touches
-// one, because filters look at their neighbours' values whatever these show.
+// one, because filters read the values of neighbours with or without a surface.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 

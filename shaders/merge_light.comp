@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse and specular illumination of the sources, every page, as one: what their materials would have to be lit by in
-// both ways to look the same.
+// Merges diffuse and specular illumination of the sources, every page, into one: the light that, used as both, makes
+// the materials look the same.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/bsdf.glsl"
 #include "lib/camera.glsl"

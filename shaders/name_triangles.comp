@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// What pixels of views see, from the numbers of the triangles that were drawn there.
+// Finds the visible surfaces of the views' pixels from the numbers of the triangles that were drawn there.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "shared/scene.h"

@@ -15,7 +15,7 @@ void main() {
         uint pixel = params.first_pixel + item;
         vec3 diffuse = vec3(0.0);
         vec3 specular = vec3(0.0);
-        if (params.id.at[pixel] != 0xFFFFFFFFu) { // what filters left there may be old
+        if (params.id.at[pixel] != 0xFFFFFFFFu) { // elsewhere, filters may have left old values
             diffuse = params.diffuse_in.at[pixel].rgb;
             if (params.is_punctual_apart != 0u) {
                 diffuse += params.punctual_in.at[pixel].rgb;

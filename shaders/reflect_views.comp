@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// For listed pixels of smooth surfaces, one ray finds what they mirror. Mirrors show it as the sources know it; on
-// other glossy surfaces the ray's length says where the sources show the same reflection.
+// For each listed pixel of a smooth surface, one ray finds the surface that it mirrors. Mirrors show that surface with
+// its light in the sources; on other glossy surfaces the ray's length says where the sources show the same reflection.
 // Virtual points: T. Stachowiak. Stochastic Screen-Space Reflections. SIGGRAPH courses 2015; D. Zhdanov. ReBLUR. Ray
 // Tracing Gems II, 2021. Differs: between views, not frames; the length is the target's own.
 #extension GL_GOOGLE_include_directive : require
@@ -46,7 +46,7 @@ SmoothPixel find_pixel(uint index, ViewPixel pixel) {
     return found;
 }
 
-// Radiance that arrives from what a ray met, if the sources or the scene's lights alone say what that is.
+// Radiance that arrives from the ray's hit; false if neither the sources nor the scene's lights alone determine it.
 bool known_radiance(Hit hit, vec3 direction, float cone_width, out vec3 radiance) {
     if (hit.instance == kNoInstance) {
         radiance = environment_radiance(load_scene_info(), direction);
@@ -81,7 +81,7 @@ vec3 specular_in_sources(SmoothPixel p, float curvature, float distance_m, vec3 
     return sum.a > 0.0 ? sum.rgb / sum.a : specular;
 }
 
-// Specular light of what the pixel mirrors; `reprojected` is what the sources show of the surface itself.
+// Specular light from the direction that the pixel mirrors; `reprojected` is the surface's own light in the sources.
 vec3 mirrored_light(SmoothPixel p, vec3 mirrored, uint seed, vec3 reprojected) {
     Hit hit = trace_closest(path_origin(p.surface, mirrored), mirrored, 0.0, 1e30, kTraceStochastic, seed);
     float distance_m = hit.instance == kNoInstance ? kFar : hit.t;

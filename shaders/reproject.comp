@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Reprojects the sources' illumination into every pixel of every view and remodulates it with the view's own material,
-// or keeps it for filters. What cannot be reused becomes a hole. Sky and emission are exact.
+// or keeps it for filters. Pixels without light to reuse become holes. Sky and emission are exact.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/camera.glsl"
 #include "lib/geometry_texel.glsl"

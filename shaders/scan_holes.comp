@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
 // Turns the blocks' counts into the number of each block's first hole, in one group: every invocation sums a run of
-// blocks, the sums are scanned, and the runs are gone through again.
+// blocks, the sums are scanned, and a second pass over the runs writes the numbers.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 

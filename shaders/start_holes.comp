@@ -1,7 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Stores the surfaces of holes and takes what is to be had without rays: the hole's own light of the frame before, and
-// for isolated holes the light of the same surface around their place in the source. Lists the others.
+// Stores the surfaces of holes, and fills holes without rays where possible. It takes the hole's own light of the
+// previous frame, and for isolated holes the light of the same surface around their place in the source. Lists the
+// others.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 
@@ -11,9 +12,9 @@ layout(push_constant, scalar) uniform Push { HoleParams params; };
 #include "lib/holes.glsl"
 
 const float kSettledFrames = 4.0; // from then on a hole is traced in every fourth frame only
-const uint kIsolatedCount = 3u;   // holes of a tile of 32 pixels that are still isolated
+const uint kIsolatedCount = 3u;   // largest number of holes in a tile of 32 pixels that counts as isolated
 
-// Where the surface point was in the frame before, and its plane there.
+// Place and plane of the surface point in the previous frame.
 Target past_target(Target now, Visibility seen, vec3 weights, uvec3 vertices, CameraRecord before) {
     mat4x3 m = load_previous_transform(seen.instance);
     vec3 corner0 = load_vertex(vertices.x).xyz;
@@ -66,7 +67,7 @@ void list_hole(uint number, uint view) {
     params.lists.at[(is_first ? 0u : params.hole_count) + slot] = number;
 }
 
-// The pixel's surface: its point's barycentrics and view depth, its triangle, and how it is stored.
+// The pixel's surface: barycentrics and view depth of its point, its triangle, and its stored form.
 struct HoleSurface {
     vec3 at; // barycentrics of the second and third vertex, view depth
     uvec3 vertices;
@@ -95,7 +96,7 @@ HoleLight remembered_light(uint view, Target target, Visibility seen, HoleSurfac
     return HoleLight(vec3(0.0), vec3(0.0), 0.0);
 }
 
-// Whether a hole can do without rays in this frame. `light` becomes what it then shows.
+// Whether a hole needs no rays in this frame. `light` becomes the light that it then shows.
 bool fill_without_rays(ViewPixel pixel, Target target, inout HoleLight light) {
     bool is_its_turn = ((pixel.x + 2u * pixel.y + params.noise_frame) & 3u) == 0u;
     if (light.frames >= kSettledFrames && !is_its_turn) {

@@ -52,7 +52,7 @@ void store(uint pixel, vec4 diffuse, vec4 specular) {
     params.specular.at[pixel] = specular;
 }
 
-// Adds what the taps around `c` that resemble it hold.
+// Adds the light of the taps around `c` that resemble it.
 void add_taps(Centre c, inout Signal diffuse, inout Signal specular) {
     for (int y = -params.radius; y <= params.radius; ++y) {
         for (int x = -params.radius; x <= params.radius; ++x) {

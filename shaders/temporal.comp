@@ -91,8 +91,8 @@ vec4 catmull_rom(float f) {
                 f * f * (0.5 * f - 0.5));
 }
 
-// Illumination from 4×4 pixels where all of them show the previous surface. Bilinear weights, frame after frame, blur
-// what moves across the image; these hardly do.
+// Illumination from 4×4 pixels where all of them show the previous surface. Bilinear weights, applied frame after
+// frame, blur surfaces that move across the image; these weights hardly do.
 void sharpen(CameraRecord camera, uint page, vec2 p, PreviousSurface previous, inout History sum) {
     vec2 corner = floor(p - 0.5);
     vec2 f = p - 0.5 - corner;
@@ -188,7 +188,7 @@ void keep_taps(uint pixel, vec2 position, uint accepted) {
     }
 }
 
-// What one frame shows of a pixel, before it is averaged.
+// Values of a pixel in one frame, before they are averaged.
 struct Sample {
     vec3 diffuse;
     vec3 specular;
@@ -215,7 +215,7 @@ void start_history(uint index, Sample fresh) {
     keep_taps(index, vec2(0.0), 0u);
 }
 
-// Share of the specular history that stays: what a smooth surface mirrored is gone once its lobe has turned.
+// Share of the specular history that is kept: a smooth surface loses its old reflection once its lobe has turned.
 float specular_share(uvec4 geometry, float mirror_turn, float pixel_angle) {
     if ((params.flags & kFlagFollowLobes) == 0u) {
         return 1.0;
@@ -224,7 +224,7 @@ float specular_share(uvec4 geometry, float mirror_turn, float pixel_angle) {
     return exp(-mirror_turn * mirror_turn * lobe_falloff(roughness, pixel_angle));
 }
 
-// Whether the surface at `position` moves: its light is then not what it was elsewhere, and has the short average.
+// Whether the surface at `position` moves. Its light then changes with its place, so it has the short average.
 bool is_moving(CameraRecord now, vec2 position, float depth, vec3 previous_position) {
     vec3 here = now.origin + camera_direction(now, position) * depth;
     return length(previous_position - here) > kMotionFootprints * depth / now.focal_px;

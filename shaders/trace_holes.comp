@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Path traces listed holes and blends them with what is known of them from the frame before. Paths end where they meet
-// a surface that the source shows: its illumination is there already, without noise.
+// Path traces listed holes and blends the result with their light of the previous frame. Paths end where they meet a
+// surface that the source shows, because its illumination is known there without noise.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/holes.h"
 

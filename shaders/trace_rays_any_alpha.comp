@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// What is left of the light along each ray of a buffer, with alpha tests; for tests and `bench trace`.
+// Transmittance along each ray of a buffer, with alpha tests; for tests and `bench trace`.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/surface.glsl"
 #include "lib/traversal_rays.glsl"

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// What every pixel of a batch of views sees: primary rays through pixel centres.
+// Visible surface of every pixel of a batch of views, by primary rays through pixel centres.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/blend_layers.glsl"
 #include "lib/camera.glsl"

@@ -1,7 +1,7 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Fills holes with what lies behind them: along the line on which surfaces move with their depth, the farther of the
-// two surfaces beside the hole is continued into it, mirrored at its edge. Packs four pixels into three words of RGB8.
+// Fills holes with the background: along the line on which surfaces move with their depth, the farther of the two
+// surfaces beside the hole is continued into it, mirrored at its edge. Packs four pixels into three words of RGB8.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/linear_index.glsl"
 #include "lib/views.glsl"
@@ -59,7 +59,7 @@ Edge choose_edge(Edge a, Edge b) {
     return takes_a ? a : b;
 }
 
-// As far beyond the edge as the hole's pixel is before it, if that is the same surface.
+// The pixel as far beyond the edge as the hole's pixel is before it, if it shows the same surface.
 uint mirrored(uint view, ivec2 hole, Edge edge, vec2 direction) {
     bool is_forward = dot(vec2(edge.at - hole), direction) > 0.0;
     ivec2 at = walked(hole, is_forward ? direction : -direction, 2 * edge.steps - 1);

@@ -1,7 +1,8 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Which neighbouring texels show the same surface. Inverse depth is an affine function of the position on every plane,
-// so that a surface continues where the neighbour's inverse depth is about the same, or is what either side predicts.
+// Finds the neighbouring texels that show the same surface. Inverse depth is an affine function of the position on
+// every plane, so a surface continues where the neighbour's inverse depth is about the same, or where it matches the
+// prediction from either side.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/warp.h"
 

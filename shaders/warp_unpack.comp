@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// Colour and inverse depth from the wire into the texels that warp_views.comp searches.
+// Unpacks colour and inverse depth from the wire into the texels that warp_views.comp searches.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/warp.h"
 

@@ -1,6 +1,6 @@
 #version 460
 // SPDX-License-Identifier: Apache-2.0
-// What every pixel of every view sees in the source, or else in the residual layer.
+// Finds the surface that every pixel of every view sees, in the source or else in the residual layer.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/views.glsl"
 #include "lib/warp_search.glsl"
@@ -8,7 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { WarpViewsParams params; };
 
-// What the residual layer shows in front of what the source shows must be nearer by that much.
+// A surface in the residual layer must be nearer than the source's surface by this factor to count as in front of it.
 const float kNearer = 1.02;
 
 void count(uint view, uint what) {

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tries README's commands on a Debian on which nothing is installed yet.
+"""Tries the commands of README.md on a Debian without any of the packages.
 
     tools/bare_debian.py trixie --folder /var/tmp/bare
     tools/bare_debian.py bookworm --folder /var/tmp/bare --keep -- ./fieldcast test --quick
 
-Makes a minimal root file system with mmdebstrap, copies what is committed there, and runs './fieldcast demo' and
-'./fieldcast test --quick' in it, or the command after '--'. FOLDER/SUITE.log gets what they say. Packages come from the
-mirror that this machine uses. Compiled files stay in FOLDER/SUITE.ccache, so that the next try takes less time; the root
-goes, unless --keep. Needs root, mmdebstrap, and about 10 GB.
+Makes a minimal root file system with mmdebstrap, copies the committed files there, and runs './fieldcast demo' and
+'./fieldcast test --quick' in it, or the command after '--'. FOLDER/SUITE.log receives their output. Packages come from
+the mirror that this machine uses. Compiled files stay in FOLDER/SUITE.ccache, so that the next try takes less time; the
+root is deleted unless --keep is given. Needs root, mmdebstrap, and about 10 GB.
 """
 import argparse
 import os
@@ -22,7 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent.parent
 SUITES = ("bookworm", "trixie")  # Debian 12 and 13
 COMMANDS = (("./fieldcast", "demo"), ("./fieldcast", "test", "--quick"))
 PLACE = "fieldcast"  # folder of the sources inside the root
-# In a namespace of its own: whatever ends this leaves no mount behind.
+# Runs in a namespace of its own, so that no mount stays behind, however the command ends.
 INSIDE = """
 set -e
 mount -t proc proc "$1/proc"
@@ -59,7 +59,7 @@ def copy_sources(root):
 
 
 def run(root, ccache, command, log):
-    """Exit code of `command` in the root; what it says goes to the terminal and to `log`."""
+    """Exit code of `command` in the root; its output goes to the terminal and to `log`."""
     inside = ["chroot", str(root), "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "HOME=/root", "LANG=C.UTF-8",
               "CCACHE_DIR=/ccache", "CCACHE_BASEDIR=/", "CCACHE_NOHASHDIR=1",
               "sh", "-c", f'cd /{PLACE} && exec "$@"', "sh", *command]
@@ -79,7 +79,7 @@ def arguments():
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("/var/tmp/fieldcast-bare"))
     parser.add_argument("--mirror", help="default: the one that this machine uses")
     parser.add_argument("--ccache", type=pathlib.Path, help="folder of compiled files; default: FOLDER/SUITE.ccache")
-    parser.add_argument("--keep", action="store_true", help="leave the root there; the next try goes on from it")
+    parser.add_argument("--keep", action="store_true", help="keep the root; the next try continues with it")
     words = sys.argv[1:]
     cut = words.index("--") if "--" in words else len(words)
     choice = parser.parse_args(words[:cut])

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How far SSIM* (core/image/metrics.h, ssim_without_noise) is off with the noise of given references.
+"""Measures the error of SSIM* (core/image/metrics.h, ssim_without_noise) with the noise of given references.
 
     ./fieldcast bench quality --scene sponza --size 640x360 --frames 29 --spp 64 --scored-views --presets default --out q
     ./fieldcast bench flip q    # installs the Python packages
     .cache/bench-python/bin/python tools/ssim_without_noise_bias.py q/quality.json q/default/frame29_r2_c3.exr \
         .cache/references/SCENE/640x360/frame29_row0_col2_halves
 
-The picture itself is taken for the truth. Two noisy halves are made from it with the difference of the references' halves,
-its sign drawn anew for each pixel, and pictures that are blurred more and more are compared with both: once with the truth,
-once as the benchmark does, without knowing it. Scaling the noise tells what more samples would do.
+The picture itself serves as the truth. Two noisy halves are made from it with the difference of the references' halves,
+whose sign is drawn anew for each pixel. Pictures with increasing blur are then compared twice: with the truth, and with
+both halves as the benchmark does. Scaling the noise shows the effect of more samples.
 """
 import argparse
 import json

@@ -20,7 +20,7 @@ using SlicedFrame = std::vector<grpc::Slice>;
 
 class Stream;
 
-/// The streams that are open.
+/// The open streams.
 class Streams {
 public:
     void add(Stream* stream) { streams_.lock()->insert(stream); }
@@ -31,15 +31,15 @@ private:
     Guarded<std::set<Stream*>> streams_;
 };
 
-/// One client: one write in flight.
+/// One client with at most one write in flight.
 class Stream final : public grpc::ServerGenericBidiReactor {
 public:
     explicit Stream(Streams& all) : all_(all) {
         all_.add(this);
-        StartRead(&incoming_); // the call is over when the client says so
+        StartRead(&incoming_); // the client ends the call
     }
 
-    /// From the thread that paces.
+    /// Called by the pacing thread.
     void begin(const SlicedFrame& frame) {
         {
             auto sending = sending_.lock();
@@ -77,7 +77,7 @@ public:
 
 private:
     struct Sending {
-        const SlicedFrame* frame = nullptr; ///< null: nothing is being written
+        const SlicedFrame* frame = nullptr; ///< null: no write is in flight
         std::size_t next = 0;
         bool is_over = false; ///< the client has ended the call
         bool is_finished = false;
@@ -114,7 +114,7 @@ private:
 };
 
 void Streams::begin(const SlicedFrame& frame) {
-    auto streams = streams_.lock(); // so that none of them is deleted meanwhile
+    auto streams = streams_.lock(); // so that none of them is deleted in the meantime
     for (Stream* stream : *streams) {
         stream->begin(frame);
     }

@@ -7,12 +7,12 @@
 
 namespace fieldcast::bench::fanout {
 
-/// The yardstick: a gRPC server that sends the same messages to whoever calls, whatever they call or say. At every
-/// interval the next frame begins, for each client that has got all of the one before. Messages are shared slices;
-/// nothing is serialised, counted, timed or acknowledged.
+/// The baseline: a gRPC server that sends the same messages to every caller, independent of its requests. At every
+/// interval it starts the next frame for each client that has received all of the previous one. Messages are shared
+/// slices; nothing is serialised, counted, timed or acknowledged.
 class BareServer {
 public:
-    /// On a free port of the loopback address.
+    /// Listens on a free port of the loopback address.
     BareServer(const MessageLoop& loop, double frames_per_second);
     ~BareServer();
     BareServer(const BareServer&) = delete;

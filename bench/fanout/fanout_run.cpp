@@ -13,8 +13,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kStartPatience{60};
-constexpr std::chrono::seconds kFramePatience{60}; ///< for a frame on a busy machine
-constexpr std::uint64_t kWarmFrames = 2;           ///< after which connections have their windows
+constexpr std::chrono::seconds kFramePatience{60}; ///< limit for one frame on a busy machine
+constexpr std::uint64_t kWarmFrames = 2;           ///< after these, the flow control windows of connections are settled
 
 std::vector<std::string> server_arguments(const FanoutSettings& settings, const std::filesystem::path& port_file) {
     return {"--replay",      settings.recording,
@@ -55,7 +55,7 @@ Round FanoutRun::run_round(const std::function<bool()>& after_sample) {
     };
     Round round;
     for (const std::size_t clients : settings_.clients) {
-        const bool is_bare_first = round_++ % 2 == 1; // what drifts while they take turns favours neither
+        const bool is_bare_first = round_++ % 2 == 1; // alternating order, so that drift favours neither
         if (is_bare_first) {
             round.bare.push_back(measure(*bare_, clients));
             go_on();

@@ -9,14 +9,14 @@
 
 namespace fieldcast::bench::fanout {
 
-/// What is compared, and for how long.
+/// Settings of a comparison.
 struct FanoutSettings {
-    std::filesystem::path server;    ///< program
-    std::filesystem::path recording; ///< that it replays
+    std::filesystem::path server;    ///< path of the program
+    std::filesystem::path recording; ///< file that the server replays
     std::filesystem::path folder;    ///< for files that the processes exchange; must exist
     std::vector<std::size_t> clients{1, 4, 8, 16};
     std::size_t rounds = 7;
-    std::size_t frames = 4; ///< of the recording, that the yardstick repeats
+    std::size_t frames = 4; ///< number of frames of the recording that the baseline repeats
     float frames_per_second = 5.0F;
     std::chrono::milliseconds window{2000};
 };
@@ -29,12 +29,12 @@ struct Round {
     double ratio() const { return marginal_ms_per_megabyte(served) / marginal_ms_per_megabyte(bare); }
 };
 
-/// What the server's processor time per client and byte is, against a gRPC server that only streams the same messages.
+/// Measures the server's CPU time per client and byte against a gRPC server that only streams the same messages.
 class FanoutRun {
 public:
     explicit FanoutRun(const FanoutSettings& settings);
 
-    /// Calls `after_sample` 2 · clients.size() times; if it returns false, throws Interrupted.
+    /// Runs one round. Calls `after_sample` 2 · clients.size() times and throws Interrupted if it returns false.
     Round run_round(const std::function<bool()>& after_sample);
 
     double megabytes_per_frame() const { return megabytes_per_frame_; }

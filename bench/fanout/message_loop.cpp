@@ -9,7 +9,7 @@ namespace fieldcast::bench::fanout {
 
 namespace {
 
-constexpr std::uint64_t kMaxCount = 1 << 20;      ///< of frames, and of messages in one
+constexpr std::uint64_t kMaxCount = 1 << 20;      ///< of frames, and of messages per frame
 constexpr std::uint64_t kMaxMessageBytes = 4 << 20; ///< a chunk is at most 2 MiB
 
 void write_number(std::ostream& file, std::uint64_t number) {

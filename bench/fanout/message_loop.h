@@ -7,7 +7,7 @@
 
 namespace fieldcast::bench::fanout {
 
-/// The messages of some frames as they stood on the wire, to be streamed again and again.
+/// The messages of some frames as received, to be streamed repeatedly.
 struct MessageLoop {
     using Frame = std::vector<std::string>;
     std::vector<Frame> frames;
@@ -17,11 +17,11 @@ struct MessageLoop {
     bool operator==(const MessageLoop&) const = default;
 };
 
-/// For another process on this machine: u64 count of frames; of each, u64 count of messages; of each, u64 length and
-/// bytes. Throws UserError if the file cannot be written.
+/// Writes the messages for another process on this machine: u64 number of frames; per frame, u64 number of messages;
+/// per message, u64 length and bytes. Throws UserError if the file cannot be written.
 void write_messages(const std::filesystem::path& file, const MessageLoop& loop);
 
-/// Throws UserError if the file is none of these.
+/// Reads such a file. Throws UserError if it is malformed.
 MessageLoop read_messages(const std::filesystem::path& file);
 
 } // namespace fieldcast::bench::fanout

@@ -21,7 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kMethod = "/fieldcast.v1.LightField/Open";
-constexpr std::size_t kSmallBytes = 4096; ///< trailers and answers are; payloads seldom are, and may be parsed then
+constexpr std::size_t kSmallBytes = 4096; ///< trailers and answers are smaller; few payloads are, and may be parsed
 constexpr std::chrono::milliseconds kLookInterval{5};
 
 grpc::ByteBuffer to_buffer(const v1::ClientMessage& message) {
@@ -40,7 +40,7 @@ std::string text_of(const grpc::ByteBuffer& buffer) {
     return text;
 }
 
-/// Any planes or views in any codec.
+/// A request for any planes or views in any codec.
 v1::ClientMessage what_there_is() {
     v1::ClientMessage message;
     v1::Configure& wanted = *message.mutable_configure();
@@ -54,7 +54,7 @@ v1::ClientMessage what_there_is() {
         }
         v1::CodecPreference& preference = *wanted.add_codecs();
         preference.set_semantic(wire::to_proto(semantic));
-        preference.add_codecs(v1::CODEC_ZSTD_FILTERED); // of channels that encode what they are asked for
+        preference.add_codecs(v1::CODEC_ZSTD_FILTERED); // for channels that encode on request
         for (const Codec codec : kAll<Codec>) {
             preference.add_codecs(wire::to_proto(codec));
         }
@@ -139,7 +139,7 @@ private:
     };
     struct End {
         bool is_done = false;
-        std::string problem; ///< what the server said against it
+        std::string problem; ///< the server's error
     };
 
     void handle(const std::string& bytes) {
@@ -202,7 +202,7 @@ private:
     Guarded<End> end_;
 };
 
-/// Looks again and again: what gRPC's threads count has no event of its own.
+/// Polls a condition, because the counts of gRPC's threads have no event.
 template <class Condition> bool becomes_true(const Condition& condition, std::chrono::seconds patience) {
     const auto deadline = Clock::now() + patience;
     while (!condition()) {
@@ -219,11 +219,11 @@ template <class Condition> bool becomes_true(const Condition& condition, std::ch
 struct Receivers::State {
     std::deque<Receiver> clients;
 
-    /// Throws if the server will send no frames to one of them.
+    /// Throws if the server refuses to send frames to one of them.
     void check() {
         for (Receiver& client : clients) {
             if (const std::string problem = client.problem(); client.is_done() || !problem.empty()) {
-                throw std::runtime_error("a client gets no frames: " + problem);
+                throw std::runtime_error("a client receives no frames: " + problem);
             }
         }
     }
@@ -252,7 +252,7 @@ void Receivers::wait_for_frames(std::uint64_t count, std::chrono::seconds patien
         return std::ranges::all_of(state_->clients, [&](const Receiver& client) { return client.frames() >= count; });
     };
     if (!becomes_true(have_come, patience)) {
-        throw std::runtime_error("a client got no frames in " + std::to_string(patience.count()) + " s");
+        throw std::runtime_error("a client received no frames in " + std::to_string(patience.count()) + " s");
     }
 }
 
@@ -280,7 +280,7 @@ MessageLoop Receivers::capture(std::size_t count, std::chrono::seconds patience)
         return client.captured() >= count;
     };
     if (!becomes_true(is_complete, patience)) {
-        throw std::runtime_error("the recording's frames do not come");
+        throw std::runtime_error("no frames of the recording arrive");
     }
     return client.take_captured();
 }

@@ -21,8 +21,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLookInterval{10}; ///< a file and a child's end have no event with a deadline
-constexpr std::chrono::seconds kEndPatience{10};       ///< to drain; then it is killed
-constexpr std::size_t kSaidBytes = 2000;               ///< shown of what a program said
+constexpr std::chrono::seconds kEndPatience{10};       ///< for draining; then the process is killed
+constexpr std::size_t kSaidBytes = 2000;               ///< of a program's output shown in errors
 
 std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file);
@@ -102,7 +102,7 @@ std::chrono::nanoseconds ServerProcess::cpu_time() const {
     clockid_t clock{};
     timespec time{};
     if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) {
-        throw std::runtime_error("the server's processor time cannot be read; has it ended? It said: " + text_of(log_));
+        throw std::runtime_error("the server's CPU time cannot be read; has it ended? Its output: " + text_of(log_));
     }
     return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }

@@ -9,11 +9,11 @@
 
 namespace fieldcast::bench::fanout {
 
-/// A server that runs beside the benchmark and writes its port to a file. Ended by the destructor.
+/// A server in a process of its own that writes its port to a file. The destructor ends it.
 class ServerProcess {
 public:
-    /// Removes `port_file` and waits until it is there again. Throws std::runtime_error, with what the program said, if
-    /// it ends before.
+    /// Removes `port_file`, starts the program and waits for the file. Throws std::runtime_error with the program's
+    /// output if it ends before.
     ServerProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                   const std::filesystem::path& port_file, std::chrono::seconds patience);
     ~ServerProcess();
@@ -22,7 +22,7 @@ public:
 
     int port() const { return port_; }
 
-    /// User and system time of all its threads since it was started.
+    /// User and system time of all its threads since its start.
     std::chrono::nanoseconds cpu_time() const;
 
 private:
@@ -34,7 +34,7 @@ private:
     int port_ = 0;
 };
 
-/// Runs a program to its end. Throws std::runtime_error, with what it said, if it fails.
+/// Runs a program to its end. Throws std::runtime_error with the program's output if it fails.
 void run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  const std::filesystem::path& log);
 

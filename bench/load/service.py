@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what clients of one server do to each other, with a recording instead of a renderer (docs/recordings.md).
+"""Measures how clients of one server affect each other, with a recording instead of a renderer (docs/recordings.md).
 
   python3 bench/load/service.py slow-reader|connects|restart RECORDING [--build build/release]
 
-slow-reader: latencies of quick clients without and with slow readers, interleaved, and the server's memory.
-connects: thousands of clients that connect and vanish; file descriptors and memory of the server before and after.
-restart: the server is killed and started again; how soon after its port is open does a client show a frame?
+slow-reader: latencies of quick clients with and without slow readers, interleaved, and the memory of the server.
+connects: file descriptors and memory of the server before and after thousands of clients connect and vanish.
+restart: time from the restart of a killed server (its port is open) to the next frame of a client.
 """
 import argparse
 import json
@@ -46,7 +46,7 @@ leaves = "abruptly"
 
 
 class Server:
-    """fieldcast-server with a replay, on a port of its own or a given one."""
+    """A fieldcast-server that replays a recording, on a free or a given port."""
 
     def __init__(self, arguments, folder, port=0):
         self.files = [folder / "port", folder / "metrics-port"]
@@ -60,7 +60,7 @@ class Server:
              "--max-opens-per-second-per-peer", "100000", "--max-pixels-per-peer", "1000000000000"], stderr=subprocess.DEVNULL)
         while not all(file.exists() and file.read_text().strip() for file in self.files):
             if self.process.poll() is not None:
-                raise SystemExit("the server ended: is the recording there?")
+                raise SystemExit("the server ended; does the recording exist?")
             time.sleep(0.005)
         self.ready = time.time()
         self.starting_s = self.ready - started
@@ -83,7 +83,7 @@ class Server:
 
 
 def load(arguments, folder, server, scenario, while_running=lambda: None):
-    """Runs a scenario; its groups by name."""
+    """Runs a scenario and returns the results of its groups by name."""
     (folder / "scenario.toml").write_text(scenario)
     process = subprocess.Popen([arguments.build / "client/fieldcast-load", "--scenario", folder / "scenario.toml", "--json",
                                 folder / "load.json", f"127.0.0.1:{server.port}"],
@@ -124,12 +124,12 @@ def connects(arguments, folder):
     server = Server(arguments, folder)
     facts = []
     files = server.number("process_open_fds")
-    print(f"{files:.0f} open files at first")
+    print(f"{files:.0f} open files at the start")
     for part in range(arguments.turns):
         load(arguments, folder, server, VANISHING.format(seconds=arguments.seconds))
         deadline = time.monotonic() + 60
         while server.number("process_open_fds") > files + 5 and time.monotonic() < deadline:
-            time.sleep(0.5)  # sockets of vanished clients close when the transport gets to them
+            time.sleep(0.5)  # the transport closes sockets of vanished clients with a delay
         facts.append([server.number("fieldcast_sessions_opened_total"), server.number("process_open_fds"),
                       server.number("process_resident_memory_bytes") / 1e6])
         print("{:.0f} sessions so far, {:.0f} open files, {:.1f} MB".format(*facts[-1]), flush=True)
@@ -146,7 +146,7 @@ def restart(arguments, folder):
     for turn in range(arguments.turns):
         wait_for_frame(log, shown)
         server.stop(signal.SIGKILL)
-        time.sleep(0.3 + turn * 0.7)  # the client has waited for longer and longer
+        time.sleep(0.3 + turn * 0.7)  # the client has to wait longer in each turn
         shown = log.read_text().count("frame arrived")
         server = Server(arguments, folder, server.port)
         arrived = wait_for_frame(log, shown)
@@ -169,11 +169,12 @@ def wait_for_frame(log, shown):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["slow-reader", "connects", "restart"])
-    parser.add_argument("recording", type=pathlib.Path)
-    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"))
-    parser.add_argument("--turns", type=int, default=4)
-    parser.add_argument("--seconds", type=int, default=15)
+    parser.add_argument("what", choices=["slow-reader", "connects", "restart"], help="Measurement to run.")
+    parser.add_argument("recording", type=pathlib.Path, help="Recording (.fcrec) to replay.")
+    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path("build/release"),
+                        help="Build folder (default: %(default)s).")
+    parser.add_argument("--turns", type=int, default=4, help="Number of repetitions (default: %(default)s).")
+    parser.add_argument("--seconds", type=int, default=15, help="Seconds of each load run (default: %(default)s).")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         {"slow-reader": slow_reader, "connects": connects, "restart": restart}[arguments.what](

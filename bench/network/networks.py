@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Latency of real frames on bad networks, with and without adaptation: server and client as processes, one network
-after the other.
+"""Measures the latency of real frames on bad networks, with and without adaptation. Server and client are processes;
+the networks are measured one after the other.
 
     python3 bench/network/networks.py --programs build/dev --out networks.csv
 
---method netem: two network namespaces and `tc netem` between them, with TLS and a token, as beyond loopback. Needs
-root, `ip`, `tc`, `openssl` and a kernel with netem; where one of them is missing it says so and exits with 77.
---method relay: on loopback, through relay.py, which imitates the same on the bytes of the connection.
---method auto: netem if possible.
---synthetic: the real service with frames that cost nothing to render (tests/server/synthetic_server.cpp), through the
-relay: on a machine without a GPU, rendering hides the network.
+--method netem: uses two network namespaces with `tc netem` between them, TLS and a token, as beyond loopback. It needs
+root, `ip`, `tc`, `openssl` and a kernel with netem; if one of them is missing, it prints so and exits with 77.
+--method relay: uses loopback with relay.py, which imitates the networks on the bytes of the connection.
+--method auto: uses netem if possible, otherwise the relay.
+--synthetic: uses the real service with frames that need no rendering (tests/server/synthetic_server.cpp), through the
+relay. On a machine without a GPU, rendering would hide the effect of the network.
 """
 import argparse
 import csv
@@ -48,14 +48,14 @@ def sh(*words):
 
 
 class Namespaces:
-    """Two namespaces with a cable between them; removed at the end."""
+    """Two network namespaces that a veth pair connects; removed at the end."""
 
     def __enter__(self):
         if os.geteuid() != 0:
             raise NotPossible("network namespaces need root")
         for program in ("ip", "tc", "openssl"):
             if shutil.which(program) is None:
-                raise NotPossible(f"there is no program {program}")
+                raise NotPossible(f"the program {program} is missing")
         try:
             for space in (SERVER_SPACE, CLIENT_SPACE):
                 sh("ip", "netns", "add", space)
@@ -85,7 +85,7 @@ class Namespaces:
 
 
 class Server:
-    """fieldcast-server with the flags under measurement; in a namespace with TLS and a token, or on loopback."""
+    """A fieldcast-server with the given flags, in a namespace with TLS and a token or on loopback."""
 
     def __init__(self, options, folder, is_protected):
         program = f"{options.programs}/server/fieldcast-server"
@@ -131,7 +131,7 @@ class Server:
 
 
 def run_client(options, server, port, adapts):
-    """What the client says about its frames."""
+    """Runs a client and returns its statistics."""
     result = server.folder / "client.json"
     result.unlink(missing_ok=True)
     words = [f"{options.programs}/client/fieldcast-client", "--save", "none", "--json", str(result),
@@ -186,7 +186,7 @@ def measure(options, namespaces):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--programs", default="build/dev", help="build folder")
+    parser.add_argument("--programs", default="build/dev", help="Build folder (default: %(default)s).")
     parser.add_argument("--method", choices=["auto", "netem", "relay"], default="auto")
     parser.add_argument("--synthetic", action="store_true")
     parser.add_argument("--seconds", type=float, default=30)
@@ -195,8 +195,8 @@ def main():
     parser.add_argument("--server-flags", default="--spp 1 --bounces 1 --denoiser none --reflections off --holes source")
     parser.add_argument("--client-flags", default="--grid 6x6")
     parser.add_argument("--adapt", default="quality=40,fps=2,height=90,grid=3x3,delay=100")
-    parser.add_argument("--only", default="", help="part of the names of networks")
-    parser.add_argument("--out", help="CSV file")
+    parser.add_argument("--only", default="", help="Part of the names of the networks to measure (default: all).")
+    parser.add_argument("--out", help="CSV file to write.")
     options = parser.parse_args()
     NETWORKS[:] = [network for network in NETWORKS if options.only in network.name]
     print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS), flush=True)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bad connection in front of a server on this machine: passes TCP on with delay, jitter, a rate and stalls.
+"""A bad connection to a server on this machine: forwards TCP with delay, jitter, a limited rate and stalls.
 
     with Relay(target_port, Network("slow", delay_ms=10, rate_mbit=20)) as relay:
         connect to 127.0.0.1:relay.port
 
-It works on the bytes of a connection, not on packets. A lost packet is therefore shown by what it does to the reader: it
-and all behind it come a round trip later. The sender's congestion control does not see it.
+It works on the bytes of a connection, not on packets. It models a lost packet by its effect on the reader: it
+and all later packets arrive a round trip later. The sender's congestion control does not notice the loss.
 """
 import asyncio
 import dataclasses
@@ -14,22 +14,22 @@ import socket
 import threading
 
 PACKET_BYTES = 1448
-QUEUE_BYTES = 256 * 1024  # of the slow router; beyond, the sender has to wait
+QUEUE_BYTES = 256 * 1024  # of the slow router; when it is full, the sender waits
 READ_BYTES = 16 * 1024
 
 
 @dataclasses.dataclass(frozen=True)
 class Network:
-    """Of each direction."""
+    """Properties of each direction of a network."""
     name: str
     delay_ms: float = 0.0
     jitter_ms: float = 0.0  # +-, uniform
     loss_percent: float = 0.0  # of packets
-    rate_mbit: float = 0.0  # 0: as fast as it goes
+    rate_mbit: float = 0.0  # 0: unlimited
 
 
 class Direction:
-    """One direction of one connection: reads, and writes what has been on the way for long enough."""
+    """One direction of one connection: reads data and writes it after its delay."""
 
     def __init__(self, network, reader, writer, seed):
         self.network, self.reader, self.writer = network, reader, writer
@@ -39,7 +39,7 @@ class Direction:
         self.last_arrival = 0.0
 
     def arrival(self, size, now):
-        """When `size` bytes that are read now have come through; never before those that went ahead."""
+        """Arrival time of `size` bytes that are read now; never before that of earlier bytes."""
         network = self.network
         self.link_free = max(self.link_free, now)
         if network.rate_mbit > 0:
@@ -73,13 +73,13 @@ class Direction:
         try:
             await asyncio.gather(self.read(), self.write())
         except (OSError, asyncio.CancelledError):
-            pass  # an end has gone, or the relay
+            pass  # one end or the relay was closed
         finally:
             self.writer.close()
 
 
 class Relay:
-    """Listens on a port of loopback from `with` on, in a thread of its own."""
+    """Listens on a port of loopback within its `with` block, in a thread of its own."""
 
     def __init__(self, target_port, network):
         self.target_port, self.network = target_port, network
@@ -111,7 +111,7 @@ class Relay:
         self.loop.close()
 
     async def pass_on(self, reader, writer):
-        # A small buffer: otherwise the system takes in megabytes that the slow link has not seen.
+        # A small buffer: otherwise the system buffers megabytes that have not passed the slow link.
         target = socket.socket()
         target.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 * 1024)
         target.setblocking(False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The relay does what its networks say. Run: python3 bench/network/relay_test.py"""
+"""Tests that the relay imitates its networks. Run: python3 bench/network/relay_test.py"""
 import socket
 import threading
 import time
@@ -36,14 +36,14 @@ class RelayTest(unittest.TestCase):
     source = Source()
 
     def seconds(self, network, words, size):
-        """From the question to the end of the answer."""
+        """Seconds from the request to the end of the answer."""
         with (Relay(self.source.port, network) as relay,
               socket.create_connection(("127.0.0.1", relay.port), PATIENCE_S) as caller):
             begin = time.monotonic()
             caller.sendall(words)
             while size > 0:
                 got = caller.recv(65536)
-                self.assertTrue(got, "the relay hung up")
+                self.assertTrue(got, "the relay closed the connection")
                 size -= len(got)
             return time.monotonic() - begin
 

@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A kind of work, and what it took in the paper's figure 3: Sponza, 6×6 views of 1280×720, RTX 3090, 54 ms. There is
-/// no number for what that figure does not show.
+/// A kind of work, and its time in ms in the paper's figure 3: Sponza, 6×6 views of 1280×720, RTX 3090, 54 ms in all.
+/// The time is 0 for kinds that the figure does not show.
 struct Kind {
     const char* name;
     std::size_t series;
@@ -105,9 +105,9 @@ std::string kind_of_stage(const std::string& stage) {
 
 report::Page frame_page(const Json& result) {
     const double frame_ms = result["frame_ms"].get<double>();
-    report::Page page(result["scene"].get<std::string>() + ": where the time of a frame goes",
+    report::Page page(result["scene"].get<std::string>() + ": time of the stages of a frame",
                       "A frame takes " + report::fixed(frame_ms, 0) +
-                          " ms; following paths, of the source and of holes, " + "is " +
+                          " ms; tracing paths of the source and of holes " + "is " +
                           report::fixed(100.0 * path_share(result), 0) +
                           " % of it. In the paper it is 70 %. Compare shares, not times: the machines differ.");
     page.add_section("The frame", breakdown(result));
@@ -118,7 +118,7 @@ report::Page frame_page(const Json& result) {
                              {"path traced", percent_text(result["traced_share"]) + " of the synthesised pixels"},
                              {"one source path", report::fixed(result["ns_per_source_path"].get<double>(), 0) + " ns"},
                              {"one hole path", report::fixed(result["ns_per_hole_path"].get<double>(), 0) + " ns"}}));
-    page.add_section("How it was measured",
+    page.add_section("Measurement",
                      origin(result, {{"frames", result["frames"].dump() + " after warm-up, medians of each stage"},
                                      {"peak memory",
                                       report::fixed(result["peak_rss_bytes"].get<double>() / 1048576.0, 0) + " MiB"}}));

@@ -7,10 +7,10 @@
 
 namespace fieldcast::bench {
 
-/// Kind of work that a stage of a frame belongs to, as the paper's figure 3 tells them apart: "path tracing".
+/// Kind of work of a stage, with the kinds of the paper's figure 3, such as "path tracing".
 std::string kind_of_stage(const std::string& stage);
 
-/// The report of a result of `frame`: where the time goes, beside the paper's figure 3.
+/// The report of a result of `frame`: its stage times next to those of the paper's figure 3.
 report::Page frame_page(const nlohmann::ordered_json& result);
 
 } // namespace fieldcast::bench

@@ -94,7 +94,7 @@ report::Page grids_page(const Json& result) {
     page.add_section("Cost", cost(rows));
     page.add_section("All numbers", all_numbers(rows));
     page.add_section(
-        "How they were measured",
+        "Measurement",
         origin(result, {{"views made by", result["preset"].get<std::string>()},
                         {"protocol", result["protocol"].get<std::string>() + ", " + result["size"].get<std::string>() +
                                          " pixels, frames " + result["frames"].dump()},

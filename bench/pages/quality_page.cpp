@@ -22,7 +22,7 @@ constexpr std::uint32_t kCropWidth = 320;
 constexpr std::uint32_t kCropHeight = 180;
 constexpr float kLargestError = 0.25F; // of error maps
 
-/// The row to look at: "default", or the last one.
+/// The row to emphasise: "default", or the last one.
 std::string highlighted_row(const Rows& rows) {
     const auto ours = std::ranges::find(rows, "default", [](const auto& row) { return row.first; });
     return ours != rows.end() ? ours->first : rows.back().first;
@@ -140,7 +140,7 @@ report::Markup meanings() {
     return report::definitions(
         {{"RMSE", "Root mean squared error of display-referred values (0 … 1); mean over pictures."},
          {"SSIM", "Structural similarity (Wang et al. 2004) of the luma; mean over pictures."},
-         {"RMSE*, SSIM*", "What they would be against references without noise, estimated from two halves of their "
+         {"RMSE*, SSIM*", "Estimated values against references without noise, from the two halves of their "
                           "samples."},
          {"relMSE", "Squared error over squared reference, of linear values; a few dark pixels can carry it."},
          {"holes, reused, border, moving",
@@ -199,7 +199,7 @@ report::Page quality_page(const Json& result, const ShownPictures& shown) {
     if (!shown.pictures.empty()) {
         add_pictures(page, result, shown, highlighted);
     }
-    page.add_section("Where errors are", parts(rows, highlighted));
+    page.add_section("Errors by region", parts(rows, highlighted));
     if (const Rows temporal = part_of(rows, "temporal"); !temporal.empty()) {
         page.add_section("Over time", steadiness(temporal, highlighted));
     }
@@ -207,8 +207,8 @@ report::Page quality_page(const Json& result, const ShownPictures& shown) {
         page.add_section("As a light field", light_field(fields, highlighted));
     }
     page.add_section("All numbers", all_numbers(rows, highlighted));
-    page.add_section("What they mean", meanings());
-    page.add_section("How they were measured",
+    page.add_section("Definitions", meanings());
+    page.add_section("Measurement",
                      origin(result, {{"protocol", result["protocol"].get<std::string>() + ", " +
                                                       result["size"].get<std::string>() + " pixels"},
                                      {"references", result["reference_samples"].dump() + " samples per pixel"},

@@ -9,13 +9,13 @@
 
 namespace fieldcast::bench {
 
-/// One picture as every row made it, and its reference.
+/// One picture made by every row, and its reference.
 struct ShownPictures {
     PictureId id;
     std::vector<NamedPicture> pictures;
 };
 
-/// The report of a result of `quality`. Without pictures it has none.
+/// The report of a result of `quality`. If `shown` has no pictures, the report has none.
 report::Page quality_page(const nlohmann::ordered_json& result, const ShownPictures& shown);
 
 } // namespace fieldcast::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench report`: the report of `quality` from what `quality --out` wrote, with what was added since (FLIP).
+// `fieldcast-bench report`: the report of `quality` from the folder of `quality --out`, including FLIP if it was added.
 #include "bench/commands.h"
 #include "bench/pages/quality_page.h"
 #include "core/base/error.h"
@@ -40,7 +40,7 @@ void run_report(const std::filesystem::path& folder, const std::string& html) {
         const Json result = Json::parse(stream);
         quality_page(result, read_pictures(folder, result)).write(html);
     } catch (const Json::exception& error) {
-        throw UserError(file.string() + ": is not what `quality --out` writes: " + error.what());
+        throw UserError(file.string() + ": not a result of `quality --out`: " + error.what());
     }
 }
 
@@ -49,9 +49,9 @@ void run_report(const std::filesystem::path& folder, const std::string& html) {
 void add_report_command(CLI::App& app) {
     auto folder = std::make_shared<std::string>();
     auto html = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand("report", "The report of `quality` from its folder, after FLIP was added");
-    command->add_option("folder", *folder, "what `quality --out FOLDER` wrote")->required();
-    command->add_option("--html", *html, "the file to write")->required();
+    CLI::App* command = app.add_subcommand("report", "Report of `quality` from its folder, including FLIP.");
+    command->add_option("folder", *folder, "Folder that `quality --out FOLDER` wrote.")->required();
+    command->add_option("--html", *html, "HTML file to write.")->required();
     command->callback([folder, html] { run_report(*folder, *html); });
 }
 

@@ -8,9 +8,10 @@
 
 namespace fieldcast::bench {
 
-// What the pages of all results have in common.
+// Parts that the pages of all results share.
 
-/// Bars of one number, `key`, of each row; `rows` are pairs of a name and an object. `highlighted` is the row to see.
+/// Bars of one number, `key`, of each row; `rows` are pairs of a name and an object. `highlighted` is the emphasised
+/// row.
 struct RowBars {
     std::string title;
     std::string note{};
@@ -26,7 +27,7 @@ report::Markup row_bars(const std::vector<std::pair<std::string, nlohmann::order
 /// Members of a JSON object, in their order.
 std::vector<std::pair<std::string, nlohmann::ordered_json>> members_of(const nlohmann::ordered_json& object);
 
-/// Processor, device, commit, command and further facts of a result, for the end of its page.
+/// A section with processor, device, commit, command and further facts of a result, for the end of its page.
 report::Markup origin(const nlohmann::ordered_json& result,
                       const std::vector<std::pair<std::string, std::string>>& further);
 

@@ -37,7 +37,7 @@ report::Markup cost(const Rows& rows) {
          row_bars(rows, {}, {.title = "Hole paths", .note = "per frame", .key = "hole_paths", .digits = 0})});
 }
 
-/// One measure of each view of the last frame, all configurations in one scale. Sources can be told by their values.
+/// One measure of each view of the last frame, all configurations in one scale. Sources stand out by their values.
 report::Markup maps_of(const Rows& rows, const char* measure, double factor, int digits) {
     std::vector<report::HeatMap> maps;
     for (const auto& [name, row] : rows) {
@@ -72,7 +72,7 @@ report::Page sources_page(const Json& result) {
     for (const Json& row : result["sources"]) {
         rows.emplace_back(row["sources"].get<std::string>(), row);
     }
-    report::Page page(result["scene"].get<std::string>() + ": which views to path trace", lead_of(rows));
+    report::Page page(result["scene"].get<std::string>() + ": choice of path traced views", lead_of(rows));
     page.add_section("Quality", quality(rows));
     page.add_section("Discards of each view, %", maps_of(rows, "discard_share", 100.0, 2));
     if (rows.front().second["views"].front().contains("ssim")) {
@@ -82,7 +82,7 @@ report::Page sources_page(const Json& result) {
     page.add_section("Cost", cost(rows));
     page.add_section("All numbers", all_numbers(rows));
     page.add_section(
-        "How they were measured",
+        "Measurement",
         origin(result, {{"views made by", result["preset"].get<std::string>()},
                         {"protocol", result["protocol"].get<std::string>() + ", " + result["size"].get<std::string>() +
                                          " pixels, frames " + result["frames"].dump()},

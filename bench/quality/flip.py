@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Adds FLIP to a result of `fieldcast-bench quality|warp --out FOLDER`, and checks its RMSE and SSIM with scikit-image.
 
-FLIP is a difference between images as people alternate between them: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström,
-Fairchild. FLIP: A Difference Evaluator for Alternating Images. HPG 2020. 0 is no difference, 1 the largest. The viewer is
-assumed to see 67 pixels per degree, 0.7 m from a display of 3840 pixels and 0.7 m.
+FLIP estimates the difference that people see when they alternate between two images: Andersson, Nilsson,
+Akenine-Möller, Oskarsson, Åström, Fairchild. FLIP: A Difference Evaluator for Alternating Images. HPG 2020. 0 is no
+difference, 1 the largest. The assumed resolution is 67 pixels per degree: 0.7 m from a display with a width of
+3840 pixels and 0.7 m.
 
 Packages: requirements.txt. `./fieldcast bench flip FOLDER` installs them into .cache/bench-python and runs this.
 """
@@ -38,7 +39,7 @@ def read_exr(path):
 
 
 def display(linear, exposure):
-    """clamp(exposure * linear, 0, 1) through the sRGB curve (IEC 61966-2-1), as the program shows pictures."""
+    """clamp(exposure * linear, 0, 1) through the sRGB curve (IEC 61966-2-1), as the program displays pictures."""
     x = numpy.clip(linear.astype(numpy.float64) * exposure, 0.0, 1.0)
     return numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * numpy.power(x, 1.0 / 2.4) - 0.055)
 
@@ -51,14 +52,14 @@ def read_png(path):
 
 
 def shown(folder, name, result):
-    """The picture as a display shows it: pictures of `quality` are linear, those of `warp` are what a client shows."""
+    """The display-referred picture: pictures of `quality` are linear, those of `warp` are display-referred already."""
     if "exposure" in result:
         return display(read_exr(folder / f"{name}.exr"), result["exposure"])
     return read_png(folder / f"{name}.png")
 
 
 def rows_by_input(result):
-    """Rows of `quality` have their inputs' names, those of `warp` a mode and a coding."""
+    """Rows by input: rows of `quality` are named after it, those of `warp` by mode and coding."""
     rows = result["rows"]
     return rows if isinstance(rows, dict) else {f"{row['mode']} {row['coding']}": row for row in rows}
 
@@ -68,7 +69,7 @@ def rmse(image, reference):
 
 
 def ssim(image, reference):
-    """Of the Rec. 709 luma, with the parameters of Wang et al. 2004."""
+    """SSIM of the Rec. 709 luma, with the parameters of Wang et al. 2004."""
     from skimage.metrics import structural_similarity
 
     luma = numpy.array([0.2126, 0.7152, 0.0722])
@@ -87,7 +88,7 @@ def flip(image, reference):
 
 
 def disagreements(picture, image, reference):
-    """How the numbers of the program differ from scikit-image's, as texts."""
+    """Differences between the numbers of the program and scikit-image's, as texts."""
     found = []
     for name, ours, tolerance in (("rmse", rmse, RMSE_TOLERANCE), ("ssim", ssim, SSIM_TOLERANCE)):
         expected = ours(image, reference)
@@ -115,7 +116,7 @@ def show_progress(done, total, began):
 
 
 def evaluate(folder, result):
-    """Adds "flip" to every picture; returns where the program and scikit-image disagree."""
+    """Adds "flip" to every picture; returns the differences between program and scikit-image."""
     found = []
     references = {}
     began = time.monotonic()
@@ -131,7 +132,7 @@ def evaluate(folder, result):
 
 
 def add_means(result):
-    """Adds "flip" to every row of the table that has pictures: the mean over them."""
+    """Adds "flip", the mean over its pictures, to every row of the table that has pictures."""
     for name, row in rows_by_input(result).items():
         errors = [picture["flip"] for picture in result["pictures"] if picture["input"] == name]
         if errors:
@@ -139,7 +140,7 @@ def add_means(result):
 
 
 def fill_csv(text, result):
-    """The table with its flip column filled in lines of this result: those of the same command, scene and input."""
+    """The table with a filled flip column in the lines of this result, which have the same command, scene and input."""
     table = list(csv.DictReader(io.StringIO(text)))
     if not table or "flip" not in table[0]:
         raise ValueError("no column flip: expected a table of `fieldcast-bench quality|warp --csv`")
@@ -174,7 +175,7 @@ def run(arguments):
         replace_file(arguments.csv, fill_csv(arguments.csv.read_text(encoding="utf-8"), result))
     if problems:
         print("\n".join(problems[:10]), file=sys.stderr)
-        print(f"fieldcast: {len(problems)} numbers are not those of scikit-image", file=sys.stderr)
+        print(f"fieldcast: {len(problems)} numbers differ from those of scikit-image", file=sys.stderr)
         return 1
     print(f"RMSE and SSIM of {len(result['pictures'])} pictures agree with scikit-image")
     return 0
@@ -183,8 +184,8 @@ def run(arguments):
 def main():
     parser = argparse.ArgumentParser(prog="./fieldcast bench flip", description=__doc__.split("\n\n")[0],
                                      epilog="Writes the numbers into FOLDER/quality.json or FOLDER/warp.json.")
-    parser.add_argument("folder", type=pathlib.Path, help="what `quality --out FOLDER` or `warp --out FOLDER` wrote")
-    parser.add_argument("--csv", type=pathlib.Path, help="also fill the flip column of this table of `--csv`")
+    parser.add_argument("folder", type=pathlib.Path, help="Folder of `quality --out FOLDER` or `warp --out FOLDER`.")
+    parser.add_argument("--csv", type=pathlib.Path, help="Also fill the flip column of this table of `--csv`.")
     try:
         return run(parser.parse_args())
     except (OSError, ValueError, KeyError) as error:

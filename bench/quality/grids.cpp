@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench grids`: does quality depend on how many views a client asks for (the paper's figure 4)?
+// `fieldcast-bench grids`: quality and cost for different numbers of requested views (the paper's figure 4).
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/pages/grids_page.h"
@@ -77,16 +77,6 @@ void print_table(const nlohmann::ordered_json& result) {
               << "\n* estimated without the noise of the references\n";
 }
 
-std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& result) {
-    std::vector<nlohmann::ordered_json> rows;
-    for (const auto& row : result["grids"]) {
-        rows.push_back(csv_origin(result));
-        rows.back()["preset"] = result["preset"];
-        rows.back().update(row);
-    }
-    return rows;
-}
-
 void run_grids(const GridsOptions& options) {
     const GridsSettings settings = settings_of(options);
     const gpu::Device device({.name_contains = options.protocol.device});
@@ -107,7 +97,9 @@ void run_grids(const GridsOptions& options) {
         grids_page(json).write(options.html);
     }
     if (!options.csv.empty()) {
-        write_csv(options.csv, kColumns, csv_rows(json));
+        nlohmann::ordered_json first = csv_origin(json);
+        first["preset"] = json["preset"];
+        write_csv(options.csv, kColumns, csv_rows(first, json["grids"]));
     }
 }
 
@@ -116,19 +108,22 @@ void run_grids(const GridsOptions& options) {
 void add_grids_command(CLI::App& app) {
     auto options = std::make_shared<GridsOptions>();
     CLI::App* command =
-        app.add_subcommand("grids", "Quality and cost of grids of different sizes (the paper's figure 4)");
+        app.add_subcommand("grids", "Quality and cost of grids of different sizes (the paper's figure 4).");
     add_protocol_options(*command, options->protocol);
-    command->add_option("--grids", options->grids, "ROWSxCOLUMNS of each grid")->delimiter(',')->capture_default_str();
-    command->add_option("--preset", options->preset, "how views are made: " + preset_names())->capture_default_str();
-    command->add_option("--exposure", options->exposure, "default: the named scene's; automatic for a file");
+    command->add_option("--grids", options->grids, "Grids of views, each ROWSxCOLUMNS.")->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--preset", options->preset, "Preset that makes the views: " + preset_names() + ".")
+        ->capture_default_str();
+    command->add_option("--exposure", options->exposure,
+                        "Exposure (default: that of the named scene; automatic for a file).");
     command->add_flag("--all-frames", options->scores_all_frames,
-                      "score all frames of the protocol, not only the last: needs references of all views of each");
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write the table to this file");
-    command->add_option("--html", options->html, "write a report with charts to this file");
+                      "Score all frames of the protocol, not only the last; needs references of all their views.");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write the table to this CSV file.");
+    command->add_option("--html", options->html, "Write a report with charts to this HTML file.");
     command->footer(
-        "\nEvery view of every grid is scored, so references of all of them are made first (36 for the default\n"
-        "grids, slow on a processor). That can be interrupted; the same command goes on where it was.");
+        "\nEvery view of every grid is scored, so the references of all views are made first (36 for the default\n"
+        "grids, slow without a GPU). They can be interrupted; the same command continues from there.");
     command->callback([options] { run_grids(*options); });
 }
 

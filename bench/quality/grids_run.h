@@ -8,21 +8,21 @@ namespace fieldcast::bench {
 
 struct GridsSettings {
     BenchmarkScene scene;
-    Protocol protocol; ///< all views of each grid are scored, instead of its views
+    Protocol protocol; ///< its views are ignored: all views of each grid are scored
     std::filesystem::path references;
     std::string preset;
     std::vector<ViewGrid> grids; ///< rows and columns
     float exposure = 0.0F;       ///< 0: the scene's
 };
 
-/// Renders several grids of one scene, interleaved, each with a source, guard band and hole cascade of its own, as a
-/// channel made for that grid has them, and scores all their views.
+/// Renders several grids of one scene, interleaved, and scores all their views. Each grid has its own source, guard
+/// band and hole cascade, as in a channel for that grid.
 class GridsRun {
 public:
-    /// Throws UserError if the scene cannot be had or the preset is not known.
+    /// Throws UserError if the scene is not usable or the preset is unknown.
     GridsRun(const gpu::Device& device, const GridsSettings& settings);
 
-    /// Makes the references that are missing, then renders every frame. Throws Interrupted.
+    /// Makes missing references, then renders every frame. Throws Interrupted.
     void run();
 
     /// Results of run(): `grids`, a list; `ssim_lost` from the first to the last. Without provenance.
@@ -30,7 +30,7 @@ public:
     std::uint64_t invalid_samples() const;
 
 private:
-    /// A grid and how good it was.
+    /// A grid and its scores.
     struct Entry {
         ViewGrid grid;
         QualityRow row;

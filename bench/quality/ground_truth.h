@@ -9,25 +9,25 @@
 
 namespace fieldcast::bench {
 
-/// What is known of one view in a scored frame, whatever the row that is scored.
+/// Known facts of one view in a scored frame, the same for all rows.
 struct ViewTruth {
     ReferencePicture reference;
-    std::vector<bool> moving{};                      ///< around moving objects; empty: not known
-    std::optional<image::Correspondence> before{};   ///< where its pixels were in the frame before, if that was noted
-    std::optional<image::RgbF32> reference_before{}; ///< linear, of the frame before, if there is one
+    std::vector<bool> moving{};                      ///< pixels at or near moving objects; empty: unknown
+    std::optional<image::Correspondence> before{};   ///< position of its pixels in the previous frame, if noted
+    std::optional<image::RgbF32> reference_before{}; ///< linear, of the previous frame, if there is one
 };
 
-/// Knows references, surfaces and motion of the views that are scored.
+/// Provides references, surfaces and motion of the scored views.
 class GroundTruth {
 public:
     GroundTruth(LightFieldScene& scene, References& references, const Protocol& protocol);
 
-    /// Notes what the views show in this frame, in which the scene is posed, so that the next one can be compared with
-    /// it. `maker` has rendered the frame and reuses.
+    /// Stores the surfaces that the views show in the current frame, for comparison with the next frame. The scene is
+    /// posed in this frame, and `maker` has rendered it with reuse.
     void note_frame(const ViewMaker& maker);
 
-    /// Of frame `frame`, in which the scene is posed. `maker` has rendered it and reuses; null: only references are
-    /// known.
+    /// The facts of frame `frame`, in which the scene is posed. `maker` has rendered it with reuse; null: only
+    /// references are known.
     std::map<LatticePosition, ViewTruth> of_frame(std::uint32_t frame, const ViewMaker* maker);
 
 private:

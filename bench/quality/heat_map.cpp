@@ -14,7 +14,7 @@ constexpr std::uint32_t kSquarePx = 48;
 constexpr std::uint32_t kGapPx = 2;
 constexpr std::uint32_t kDotPx = 12;
 
-/// Dark violet, blue, green, yellow: its brightness grows evenly, so that it also reads without colours.
+/// Dark violet, blue, green, yellow. Its brightness grows evenly, so it is readable without colours.
 glm::vec3 ramp(double value) {
     constexpr std::array<glm::vec3, 4> kColours{glm::vec3(0.16F, 0.05F, 0.30F), glm::vec3(0.15F, 0.35F, 0.60F),
                                                 glm::vec3(0.20F, 0.68F, 0.47F), glm::vec3(0.99F, 0.91F, 0.25F)};

@@ -9,8 +9,8 @@
 
 namespace fieldcast::bench {
 
-/// A picture of one value per view of `grid`, row-major: a square each, dark for 0, bright for `brightest` and more.
-/// Squares of `sources` have a white dot.
+/// A picture with one square per view of `grid`, row-major: dark for value 0, bright for `brightest` and more. Squares
+/// of `sources` have a white dot.
 Plane heat_map(const ViewGrid& grid, std::span<const double> values, double brightest,
                const std::vector<LatticePosition>& sources);
 

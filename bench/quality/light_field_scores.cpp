@@ -26,7 +26,7 @@ Images displayed(const Images& linear, float exposure) {
     return result;
 }
 
-/// Linear light that a display emits: exposed and clamped to what it can show.
+/// Linear light that a display emits: exposed and clamped to its range.
 Images emitted(Images linear, float exposure) {
     for (image::RgbF32& image : linear) {
         for (glm::vec3& pixel : image.pixels) {
@@ -105,7 +105,7 @@ image::RgbF32 focused(const ViewGrid& grid, const Images& views, float focal_px,
         const auto disparity = [&](float spacing_m) {
             return disparity_px(focal_px, spacing_m, depth_m, grid.geometry.convergence_m);
         };
-        // x_source = x_target + column · disparity (docs/lightfield.md), so a point lies that much further left.
+        // x_source = x_target + column · disparity (docs/lightfield.md), so the point is further left by this amount.
         shifted.push_back({&views[i],
                            {-positions[i].col() * disparity(grid.geometry.spacing_m.x),
                             -positions[i].row() * disparity(grid.geometry.spacing_m.y)}});

@@ -15,15 +15,15 @@ struct LightFieldPictures {
     std::vector<image::ViewSurfaces> surfaces;
 };
 
-/// What single views do not tell.
+/// Measures of a whole light field:
 ///   views            row, col, rmse and ssim of each view
 ///   rmse, ssim       mean, min, max and deviation over the views
 ///   angular_error    mean over neighbouring views v, u, pixels that both show, and channels of
-///                    |(v − u moved to v) − (the same of the references)|: 0 if errors stick to surfaces
+///                    |(v − u moved to v) − (the same for the references)|: 0 if errors stick to surfaces
 ///   epi_ssim         structural similarity of epipolar slices, mean over rows and columns of views
 ///   refocus          depth_m, rmse and ssim of the light field refocused at five depths
 ///   refocus_rmse, refocus_ssim   their means
-/// All are of display-referred values; views are refocused in the linear light that a display emits for them.
+/// All use display-referred values; views are refocused in the linear light that a display emits.
 nlohmann::ordered_json light_field_scores(const ViewGrid& grid, const LightFieldPictures& pictures, float exposure);
 
 } // namespace fieldcast::bench

@@ -29,7 +29,7 @@ Motion find_motion(const scene::Scene& scene, const scene::ScenePose& before, co
     for (const scene::Instance& instance : scene.instances) {
         const glm::mat4& world_from_node = now.world_from_node.at(instance.node);
         const glm::mat4& world_from_node_before = before.world_from_node.at(instance.node);
-        // The transforms of nodes at rest are computed from the same numbers, so they are equal to the last bit.
+        // The transforms of nodes at rest are computed from the same numbers, so they are bitwise equal.
         const bool is_moving = world_from_node != world_from_node_before;
         motion.is_moving.push_back(is_moving);
         motion.before_from_now.push_back(is_moving ? world_from_node_before * glm::inverse(world_from_node)

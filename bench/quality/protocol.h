@@ -9,7 +9,7 @@
 
 namespace fieldcast::bench {
 
-/// What is scored: frames after a cold start at frame 0, and views of a 6×6 grid.
+/// The scored pictures: frames after a cold start at frame 0, and views of a 6×6 grid.
 struct Protocol {
     std::string name;
     Size size;

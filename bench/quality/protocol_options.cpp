@@ -7,17 +7,20 @@ namespace fieldcast::bench {
 
 void add_protocol_options(CLI::App& command, ProtocolOptions& options) {
     command.add_option("--scene", options.scene, describe_scene_option())->capture_default_str();
-    command.add_option("--protocol", options.protocol, "reduced (two processor cores) or full (a GPU)")
+    command.add_option("--protocol", options.protocol,
+                       "Pictures to score: reduced (for two processor cores) or full (for a GPU).")
         ->capture_default_str();
-    command.add_option("--size", options.size, "size of source and views; default: the protocol's");
-    command.add_option("--frames", options.frames, "frames to score, such as 11,29; default: the protocol's")
+    command.add_option("--size", options.size,
+                       "Size of source and views in pixels, WIDTHxHEIGHT (default: the protocol's).");
+    command.add_option("--frames", options.frames, "Frames to score, such as 11,29 (default: the protocol's).")
         ->delimiter(',')
         ->check(CLI::Range(0, 10'000));
-    command.add_option("--spp", options.reference_samples, "samples of the references; default: the protocol's")
+    command.add_option("--spp", options.reference_samples,
+                       "Samples per pixel of the references (default: the protocol's).")
         ->check(CLI::Range(1, 1 << 20));
-    command.add_option("--references", options.references, "folder of the references, which are kept")
+    command.add_option("--references", options.references, "Folder of the references, which are kept for later runs.")
         ->capture_default_str();
-    command.add_option("--device", options.device, "part of the Vulkan device's name");
+    command.add_option("--device", options.device, "Part of the name of the Vulkan device.");
 }
 
 Protocol chosen_protocol(const ProtocolOptions& options) {

@@ -8,7 +8,7 @@
 
 namespace fieldcast::bench {
 
-/// What all commands have in common that compare views with references.
+/// Options that all commands share that compare views with references.
 struct ProtocolOptions {
     std::string scene = "atelier";
     std::string protocol = "reduced";
@@ -21,10 +21,10 @@ struct ProtocolOptions {
 
 void add_protocol_options(CLI::App& command, ProtocolOptions& options);
 
-/// The protocol with what the command line says otherwise. Throws UserError.
+/// The protocol with the changes of the command line. Throws UserError.
 Protocol chosen_protocol(const ProtocolOptions& options);
 
-/// One line for people.
+/// A description in one line.
 std::string describe(const Protocol& protocol);
 
 } // namespace fieldcast::bench

@@ -66,22 +66,22 @@ void run_quality(const QualityOptions& options) {
 }
 
 constexpr const char* kFooter = R"(
---temporal renders 38 more frames with scene and camera at rest and measures flicker in the last 8, and compares each
-scored frame with the one before (warped error). Where references of the frames before are there, made with `reference
---temporal`, their own warped error is subtracted as well.
+--temporal renders 38 more frames with scene and camera at rest and measures flicker in the last 8. It compares each
+scored frame with the previous one (warped error). If `reference --temporal` has made references of the previous frames,
+their own warped error is subtracted as well.
 
---light-field scores all 36 views of the last frame: each view's errors, consistency of neighbouring views, epipolar
-slices, refocused images. It makes the references of these views where they are missing, which takes as long as twelve
-frames of the reduced protocol: slow on a processor.
+--light-field scores all 36 views of the last frame: errors of each view, consistency of neighbouring views, epipolar
+slices and refocused images. It makes missing references of these views, which takes as long as twelve frames of the
+reduced protocol and is slow without a GPU.
 
-docs/measurements/metrics.md says what each number means.)";
+docs/measurements/metrics.md explains each number.)";
 
 void add_measures(CLI::App& command, QualityOptions& options) {
     command.add_flag("--scored-views", options.renders_scored_views_only,
-                     "render only the views that are scored: faster, but frame times and shares are not those of 6x6");
-    command.add_flag("--temporal", options.has_temporal, "also warped error and flicker (slower, see below)");
+                     "Render the scored views only: faster, but frame times and shares are not those of 6x6.");
+    command.add_flag("--temporal", options.has_temporal, "Also measure warped error and flicker (slower, see below).");
     command.add_flag("--light-field", options.has_light_field,
-                     "also all views of the last frame and what they are together (slow, see below)");
+                     "Also score all views of the last frame, alone and as a light field (slow, see below).");
     command.footer(kFooter);
 }
 
@@ -90,20 +90,23 @@ void add_measures(CLI::App& command, QualityOptions& options) {
 void add_quality_command(CLI::App& app) {
     auto options = std::make_shared<QualityOptions>();
     CLI::App* command =
-        app.add_subcommand("quality", "RMSE and SSIM of views against references (the paper's table 1)");
+        app.add_subcommand("quality", "RMSE and SSIM of views against references (the paper's table 1).");
     add_protocol_options(*command, options->protocol);
-    command->add_option("--presets", options->presets, "rows of the table besides 1 spp: " + preset_names())
+    command->add_option("--presets", options->presets,
+                        "Presets, the rows of the table besides 1 spp: " + preset_names() + ".")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_option("--exposure", options->exposure, "default: the named scene's; automatic for a file");
-    command->add_option("--indirect-clamp", options->indirect_clamp, "instead of the presets'; 0: none");
+    command->add_option("--exposure", options->exposure,
+                        "Exposure (default: that of the named scene; automatic for a file).");
+    command->add_option("--indirect-clamp", options->indirect_clamp,
+                        "Clamp of indirect light; 0: none (default: the presets').");
     add_measures(*command, *options);
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write the table to this file");
-    command->add_option("--html", options->html, "write a report with charts and pictures to this file");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write the table to this CSV file.");
+    command->add_option("--html", options->html, "Write a report with charts and pictures to this HTML file.");
     command->add_option(
         "--out", options->out,
-        "write the scored views to this folder, PNG and EXR, and quality.json, for `./fieldcast bench flip`");
+        "Write the scored views (PNG and EXR) and quality.json to this folder, for `./fieldcast bench flip`.");
     command->callback([options] { run_quality(*options); });
 }
 

@@ -8,7 +8,7 @@
 
 namespace fieldcast::bench {
 
-/// One row of a quality table: a way to make views, and how good they were.
+/// One row of a quality table: a way to make views, and the scores of these views.
 class QualityRow {
 public:
     QualityRow(std::string name, std::unique_ptr<ViewMaker> maker);
@@ -17,16 +17,16 @@ public:
     ViewMaker& maker() { return *maker_; }
     const ViewMaker& maker() const { return *maker_; }
 
-    /// The last frame was one whose cost counts.
+    /// Adds the cost of the last frame to the means.
     void add_cost();
 
-    /// Scores a view of the last frame; returns it, linear.
+    /// Scores a view of the last frame and returns the view, linear.
     image::RgbF32 score(const PictureId& id, const ViewTruth& truth);
 
-    /// Keeps views of the last frame, to be compared with those of the next.
+    /// Stores views of the last frame for comparison with those of the next.
     void keep_frame(const std::vector<LatticePosition>& positions);
 
-    /// The scene rests, and has for long: how much do views of the last frame differ from those of others at rest?
+    /// Adds views of the last frame to the measurement of flicker; the scene must have been at rest for long.
     void score_at_rest(const std::vector<LatticePosition>& positions);
 
     /// `truth`: references and surfaces of all views of `grid`; its views are filled in.

@@ -79,7 +79,7 @@ void QualityRun::run() {
     }
 }
 
-/// What is done with a frame that all rows have made.
+/// Scores a frame that all rows have made.
 void QualityRun::take_frame(std::uint32_t frame) {
     if (settings_.protocol.is_scored(frame)) {
         score_frame(frame);

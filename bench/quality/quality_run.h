@@ -16,23 +16,23 @@ struct QualitySettings {
     float indirect_clamp = -1.0F;     ///< < 0: the presets'
     bool renders_scored_views_only = false;
     bool has_temporal = false;
-    bool has_light_field = false; ///< of the last scored frame; not with renders_scored_views_only
-    std::filesystem::path out;    ///< scored views go there; empty: nowhere
+    bool has_light_field = false; ///< of the last scored frame; excludes renders_scored_views_only
+    std::filesystem::path out;    ///< folder for scored views; empty: none
 };
 
 /// Renders all rows of a quality table, interleaved, and scores them.
 class QualityRun {
 public:
-    /// Throws UserError if the scene cannot be had or a preset is not known.
+    /// Throws UserError if the scene is not usable or a preset is unknown.
     QualityRun(const gpu::Device& device, const QualitySettings& settings);
 
-    /// Makes the references that are missing, then renders every frame. Throws Interrupted.
+    /// Makes missing references, then renders every frame. Throws Interrupted.
     void run();
 
     /// Results of run(): exposure, rows by name, pictures. Without provenance.
     nlohmann::ordered_json result() const;
 
-    /// The last view of the protocol in its last frame, as every row made it, and the reference.
+    /// The last view of the protocol in its last frame, made by every row, and its reference.
     const ShownPictures& shown() const { return shown_; }
     std::uint64_t invalid_samples() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench reference`: makes what `quality` and `grids` compare with, beforehand.
+// `fieldcast-bench reference`: makes the references of `quality` and `grids` in advance.
 #include "bench/commands.h"
 #include "bench/quality/protocol_options.h"
 #include "bench/quality/references.h"
@@ -49,12 +49,14 @@ void run_reference(const ReferenceOptions& options) {
 void add_reference_command(CLI::App& app) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* command = app.add_subcommand(
-        "reference", "Make the references of `quality` and `grids`; can be interrupted, goes on where it was");
+        "reference", "Make the references of `quality` and `grids`; can be interrupted and continued.");
     add_protocol_options(*command, options->protocol);
-    command->add_flag("--temporal", options->has_temporal, "also those of the frames before the scored ones");
-    command->add_flag("--light-field", options->has_light_field, "also those of all 36 views of the last frame");
+    command->add_flag("--temporal", options->has_temporal,
+                      "Also make references of the frames before the scored ones.");
+    command->add_flag("--light-field", options->has_light_field,
+                      "Also make references of all 36 views of the last frame.");
     command->add_flag("--half", options->is_half,
-                      "as files of 16-bit floats, half as large, to share: errors of 0.02 % instead of none");
+                      "Write 16-bit floats: files of half the size for sharing, with errors of 0.02 %.");
     command->callback([options] { run_reference(*options); });
 }
 

@@ -7,8 +7,8 @@
 
 namespace fieldcast::bench {
 
-/// A view path traced with many samples, linear. What is left of its noise can be told from what it shows, because it
-/// was made twice.
+/// A view path traced with many samples, linear. Its remaining noise can be estimated because it consists of two
+/// independent halves.
 struct ReferencePicture {
     image::RgbF32 mean;                  ///< of all samples
     std::array<image::RgbF32, 2> halves; ///< each of about half of the samples, with independent noise

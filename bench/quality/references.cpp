@@ -14,17 +14,18 @@ namespace fieldcast::bench {
 
 namespace {
 
-constexpr std::uint32_t kBatch = 16; // samples between looks at the clock
+constexpr std::uint32_t kBatch = 16; // samples between reports of progress
 constexpr std::array<std::uint32_t, 2> kSeeds{0x5EED, 0xC0FFEE5};
 constexpr std::chrono::seconds kSaveInterval{30};
 
-/// Other noise in each picture: equal noise would neither average out in refocused images nor show as change over time.
+/// A different seed for each picture: equal noise would not average out in refocused images or appear as change over
+/// time.
 std::uint32_t seed_of(std::uint32_t frame, LatticePosition position, std::uint32_t half) {
     const ViewIndex index = view_index(position);
     return kSeeds[half] + 4096U * frame + static_cast<std::uint32_t>(64 * index.row + index.col);
 }
 
-/// Of each of two halves, so that both have `samples` together.
+/// Samples of each of the two halves, which have `samples` together.
 constexpr std::uint32_t half_of(std::uint32_t samples) {
     return (samples + 2 * kBatch - 1) / (2 * kBatch) * kBatch;
 }
@@ -77,7 +78,7 @@ nlohmann::ordered_json References::description(const Part& part) const {
             {"seed", kSeeds[part.half]}};
 }
 
-/// Samples that the file of this part has; 0: there is none, or it is of another scene or other settings.
+/// Number of samples in the file of this part; 0 if there is none or it belongs to another scene or other settings.
 std::uint32_t References::samples_of(const Part& part) const {
     const std::filesystem::path file = file_of(part);
     std::ifstream stream(std::filesystem::path(file).replace_extension(".json"));
@@ -98,7 +99,7 @@ std::uint32_t References::lacking(std::uint32_t frame, LatticePosition position,
 void References::save(const Part& part, const Camera& camera) const {
     const std::filesystem::path file = file_of(part);
     std::filesystem::create_directories(file.parent_path());
-    // The description goes first and comes last: an image whose description is missing is made again.
+    // The description is removed first and written last: an image without a description is made again.
     std::filesystem::path sidecar = file;
     sidecar.replace_extension(".json");
     std::filesystem::remove(sidecar);
@@ -106,7 +107,7 @@ void References::save(const Part& part, const Camera& camera) const {
     write_json(sidecar.string(), {{"of", description(part)}, {"samples_per_pixel", renderer_.samples_per_pixel()}});
 }
 
-/// Until the part has `samples`; false if `progress` stopped it.
+/// Renders until the part has `samples`; false if `progress` stopped it.
 bool References::add_samples(const Part& part, std::uint32_t samples, const Progress& progress) {
     const std::uint32_t existing = samples_of(part);
     if (existing >= samples) {
@@ -185,7 +186,7 @@ void make_references(LightFieldScene& scene, References& references, const std::
             return !guard.is_interrupted();
         };
         if (!references.get(picture.frame, picture.position, samples, report)) {
-            throw Interrupted{"the references made so far are kept, the same command goes on from there"};
+            throw Interrupted{"the references made so far are kept; the same command continues from them"};
         }
     }
 }

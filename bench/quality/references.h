@@ -10,8 +10,8 @@
 
 namespace fieldcast::bench {
 
-/// Views path traced with many samples, without clamps, kept as files: an EXR of linear radiance for each half of the
-/// samples, and beside it what it is of. Making them can be interrupted at any time; it goes on from what was saved.
+/// Views path traced with many samples, without clamps, stored as files: an EXR of linear radiance for each half of the
+/// samples, and a JSON description next to it. The work can be interrupted at any time and continues from saved files.
 class References {
 public:
     /// `folder` gets a subfolder per scene.
@@ -21,17 +21,17 @@ public:
     /// `done`: samples added to this view so far; false: stop (the image is saved).
     using Progress = std::function<bool(std::uint32_t done)>;
 
-    /// View of the scene's current pose, which is that of `frame`, with at least `samples` per pixel; makes what is
-    /// missing. Empty if `progress` stopped it.
+    /// A view of the scene's current pose, which is that of `frame`, with at least `samples` per pixel. Renders missing
+    /// samples. Empty if `progress` stopped it.
     std::optional<ReferencePicture> get(std::uint32_t frame, LatticePosition position, std::uint32_t samples,
                                         const Progress& progress);
 
-    /// Samples that this view lacks of `samples`, of both halves together; those that its files have count only if they
-    /// are of this scene and these settings.
+    /// Number of samples that the two halves of this view lack together. Files of other scenes or settings do not
+    /// count.
     std::uint32_t lacking(std::uint32_t frame, LatticePosition position, std::uint32_t samples) const;
 
 private:
-    /// One of the two pictures that are made of a view.
+    /// One of the two pictures of a view.
     struct Part {
         std::uint32_t frame = 0;
         LatticePosition position;
@@ -50,8 +50,8 @@ private:
     render::ReferenceRenderer renderer_;
 };
 
-/// Makes the references of `wanted` that are missing and says how far it is. Poses the scene. Throws Interrupted after
-/// Ctrl-C, when what was made so far is saved.
+/// Makes the missing references of `wanted` and prints progress. Poses the scene. After Ctrl-C it saves the references
+/// made so far and throws Interrupted.
 void make_references(LightFieldScene& scene, References& references, const std::vector<PictureId>& wanted,
                      std::uint32_t samples);
 

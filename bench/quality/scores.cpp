@@ -49,7 +49,7 @@ void Scores::add(const PictureId& id, const image::RgbF32& linear, const Referen
     const image::RgbF32 expected = image::display_image(reference.mean, exposure);
     const image::RgbF32 first = image::display_image(reference.halves[0], exposure);
     const image::RgbF32 second = image::display_image(reference.halves[1], exposure);
-    // Relative errors need a scale for their 0.01: that of the exposure.
+    // The constant 0.01 of relative errors needs a scale, which is the exposure.
     pictures_.push_back({id, image::rmse(shown, expected), image::ssim(shown, expected),
                          image::rmse_without_noise(shown, first, second),
                          image::ssim_without_noise(shown, first, second),

@@ -9,10 +9,10 @@
 
 namespace fieldcast::bench {
 
-/// Masks of one picture; those that are empty count as nowhere.
+/// Masks of one picture; an empty mask selects no pixel.
 struct PictureMasks {
     std::vector<bool> holes;  ///< pixels that the source did not show
-    std::vector<bool> moving; ///< around moving objects
+    std::vector<bool> moving; ///< pixels at or near moving objects
 };
 
 /// Errors of one picture.
@@ -20,7 +20,7 @@ struct PictureScore {
     PictureId id;
     double rmse = 0.0;
     double ssim = 0.0;
-    double rmse_without_noise = 0.0; ///< of the reference
+    double rmse_without_noise = 0.0; ///< estimated RMSE against a reference without noise
     double ssim_without_noise = 0.0;
     double relative_mse = 0.0;
 };
@@ -36,8 +36,8 @@ struct Spread {
 /// `values` are not empty.
 Spread spread_of(const std::vector<double>& values);
 
-/// Errors of pictures against references, display-referred (core/image/metrics.h) unless it says linear. RMSE, SSIM and
-/// relMSE are means over pictures, as in the paper; those of parts of pictures are over all pixels of the part.
+/// Errors of pictures against references; display-referred (core/image/metrics.h), except relMSE, which is linear.
+/// RMSE, SSIM and relMSE are means over pictures, as in the paper; errors of parts are over all pixels of the part.
 class Scores {
 public:
     void add(const PictureId& id, const image::RgbF32& linear, const ReferencePicture& reference, float exposure,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench sources`: which and how many views should be path traced (the paper's figure 5)?
+// `fieldcast-bench sources`: quality and cost for different choices of path traced views (the paper's figure 5).
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/pages/sources_page.h"
 #include "bench/provenance.h"
 #include "bench/quality/protocol_options.h"
-#include "bench/quality_table.h"
 #include "bench/quality/sources_run.h"
+#include "bench/quality_table.h"
 #include "core/lightfield/presets.h"
 
 #include <iomanip>
@@ -43,16 +43,6 @@ void print_table(const nlohmann::ordered_json& result) {
     }
 }
 
-std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& result) {
-    std::vector<nlohmann::ordered_json> rows;
-    for (const auto& row : result["sources"]) {
-        rows.push_back(csv_origin(result));
-        rows.back()["preset"] = result["preset"];
-        rows.back().update(row);
-    }
-    return rows;
-}
-
 void run_sources(const SourcesOptions& options) {
     const SourcesSettings settings{.scene = find_benchmark_scene(options.protocol.scene),
                                    .protocol = chosen_protocol(options.protocol),
@@ -79,7 +69,9 @@ void run_sources(const SourcesOptions& options) {
         write_json(options.json, json);
     }
     if (!options.csv.empty()) {
-        write_csv(options.csv, kColumns, csv_rows(json));
+        nlohmann::ordered_json first = csv_origin(json);
+        first["preset"] = json["preset"];
+        write_csv(options.csv, kColumns, csv_rows(first, json["sources"]));
     }
     if (!options.html.empty()) {
         sources_page(json).write(options.html);
@@ -91,22 +83,25 @@ void run_sources(const SourcesOptions& options) {
 void add_sources_command(CLI::App& app) {
     auto options = std::make_shared<SourcesOptions>();
     CLI::App* command =
-        app.add_subcommand("sources", "Quality and cost of source configurations (the paper's figure 5)");
+        app.add_subcommand("sources", "Quality and cost of source configurations (the paper's figure 5).");
     add_protocol_options(*command, options->protocol);
     command->add_option("--sources", options->configurations,
-                        "middle, top-left, diagonal, triangle, corners, or views of 6x6 as in \"0,0;5,5\"")
+                        "Source configurations: middle, top-left, diagonal, triangle, corners, or views of 6x6 as in "
+                        "\"0,0;5,5\".")
         ->expected(1, 16)
         ->capture_default_str();
-    command->add_option("--preset", options->preset, "how views are made: " + preset_names())->capture_default_str();
-    command->add_option("--exposure", options->exposure, "default: the named scene's; automatic for a file");
+    command->add_option("--preset", options->preset, "Preset that makes the views: " + preset_names() + ".")
+        ->capture_default_str();
+    command->add_option("--exposure", options->exposure,
+                        "Exposure (default: that of the named scene; automatic for a file).");
     command->add_flag("--all-views", options->scores_all_views,
-                      "score all views of the last frame, for heat maps of RMSE and SSIM: needs their references");
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write the table to this file");
-    command->add_option("--html", options->html, "write a report with charts to this file");
+                      "Score all views of the last frame, for heat maps of RMSE and SSIM; needs their references.");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write the table to this CSV file.");
+    command->add_option("--html", options->html, "Write a report with charts to this HTML file.");
     command->add_option(
         "--out", options->out,
-        "write heat maps to this folder: MEASURE_N.png for configuration N, dark 0, bright the largest");
+        "Write heat maps to this folder: MEASURE_N.png for configuration N; dark is 0, bright is the largest value.");
     command->footer("\nExample:\n  ./fieldcast bench sources --scene sponza --sources middle corners --out heat_maps");
     command->callback([options] { run_sources(*options); });
 }

@@ -11,7 +11,7 @@ struct SourcesSettings {
     Protocol protocol;
     std::filesystem::path references;
     std::string preset;
-    std::vector<std::string> configurations; ///< parse_sources()
+    std::vector<std::string> configurations; ///< texts for parse_sources()
     float exposure = 0.0F;                   ///< 0: the scene's
     bool scores_all_views = false;           ///< of the last frame, instead of the protocol's views
     std::filesystem::path out;               ///< folder of heat maps; empty: none
@@ -20,16 +20,17 @@ struct SourcesSettings {
 /// Renders all views of one scene from several configurations of source images, interleaved, and scores them.
 class SourcesRun {
 public:
-    /// Throws UserError if the scene cannot be had, or the preset or a configuration is not known.
+    /// Throws UserError if the scene is not usable, or the preset or a configuration is unknown.
     SourcesRun(const gpu::Device& device, const SourcesSettings& settings);
 
-    /// Makes the references that are missing, then renders every frame. Throws Interrupted.
+    /// Makes missing references, then renders every frame. Throws Interrupted.
     void run();
 
     /// Results of run(): `sources`, a list; of each all views of the last frame. Without provenance.
     nlohmann::ordered_json result() const;
 
-    /// A PNG per configuration and measure: discards, and RMSE and SSIM if all views are scored. One scale per measure.
+    /// Writes a PNG per configuration and measure: discards, and RMSE and SSIM if all views are scored. Each measure
+    /// has one scale.
     void write_heat_maps(const nlohmann::ordered_json& result) const;
 
     std::uint64_t invalid_samples() const;

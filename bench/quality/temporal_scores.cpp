@@ -9,7 +9,7 @@ void TemporalScores::add(const SuccessivePictures& pictures, const SuccessivePic
                          const image::Correspondence& map) {
     const auto warped = image::warped_difference(pictures.now, pictures.before, map);
     if (!warped) {
-        return; // nothing of the frame before is still seen
+        return; // no pixel of the previous frame is still visible
     }
     warped_.push_back(*warped);
     if (reference != nullptr) {

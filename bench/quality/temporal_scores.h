@@ -16,17 +16,17 @@ struct SuccessivePictures {
     image::RgbF32 now;
 };
 
-/// How steady pictures are over time.
+/// Temporal stability of pictures.
 class TemporalScores {
 public:
-    /// `map`: where the pixels of now were before. `reference`: the same two frames path traced with many samples, or
-    /// null if they are not both there.
+    /// `map`: previous positions of the current pixels. `reference`: the same two frames path traced with many samples,
+    /// or null if one of them is missing.
     void add(const SuccessivePictures& pictures, const SuccessivePictures* reference, const image::Correspondence& map);
 
-    /// One frame of a view while camera and scene are at rest.
+    /// Adds one frame of a view while camera and scene are at rest.
     void add_at_rest(LatticePosition position, const image::RgbF32& display);
 
-    /// warped_error: mean over pixels that the frame before shows too of |now − before, moved to where it is now|;
+    /// warped_error: mean of |now − before, moved to the current position| over pixels that both frames show;
     /// warped_error_excess: that minus the references' own, null unless all of them are there; flicker: standard
     /// deviation over frames at rest, null if there were none.
     nlohmann::ordered_json to_json() const;

@@ -35,7 +35,7 @@ void ViewMaker::render(std::uint32_t frame, const std::vector<LatticePosition>& 
     frame_ = frame;
     positions_ = positions;
     if (!run_) {
-        return; // pictures are made when they are asked for
+        return; // pictures are made on request
     }
     const Views views = run_->render(frame, positions);
     cost_ = {};
@@ -70,7 +70,7 @@ image::RgbF32 ViewMaker::picture(LatticePosition position) {
     RenderSettings settings;
     settings.exposure = exposure_;
     settings.light_sampling = LightSampling::plain(); // the paper's input
-    // Other noise in each view: equal noise would not average out in refocused images.
+    // A different seed for each view: equal noise would not average out in refocused images.
     const ViewIndex index = view_index(position);
     one_sample_->accumulate(settings, frame_ + 4096U * static_cast<std::uint32_t>(6 * index.row + index.col + 1));
     return {size.width_px, size.height_px, one_sample_->image()};

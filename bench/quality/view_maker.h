@@ -9,7 +9,7 @@
 
 namespace fieldcast::bench {
 
-/// What one frame took and had to trace.
+/// Time and traced pixels of one frame.
 struct FrameCost {
     double frame_ms = 0.0;
     double discarded = 0.0;   ///< pixels that could not be reused
@@ -17,20 +17,20 @@ struct FrameCost {
     double synthesised = 0.0; ///< pixels of all views that are not sources
 };
 
-/// Makes the views of frame after frame in one way: what a row of a quality table is about.
+/// Makes the views of successive frames in one way, which is one row of a quality table.
 class ViewMaker {
 public:
     /// Every view path traced with one sample per pixel, nothing reused.
     ViewMaker(const gpu::Device& device, LightFieldScene& scene, float exposure);
-    /// As a preset says, for the grid that `scene` has now.
+    /// Makes views with a preset, for the current grid of `scene`.
     ViewMaker(const gpu::Device& device, LightFieldScene& scene, const Preset& preset);
 
-    /// Makes frame number `frame` with the scene as it is posed now.
+    /// Renders frame number `frame` with the current pose of the scene.
     void render(std::uint32_t frame, const std::vector<LatticePosition>& positions);
 
-    bool reuses() const { return run_ != nullptr; } ///< false: nothing is known but pictures
+    bool reuses() const { return run_ != nullptr; } ///< false: only pictures are available
 
-    /// Linear radiance of a view of the last frame, which is still the scene's pose.
+    /// Linear radiance of a view of the last frame; the scene must still have the pose of that frame.
     image::RgbF32 picture(LatticePosition position);
     std::vector<bool> hole_mask(LatticePosition position) const; ///< empty if nothing is reused
     image::ViewSurfaces surfaces(LatticePosition position) const;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench warp`: views made from colour and depth alone against those with the scene: bytes, errors, time.
+// `fieldcast-bench warp`: compares views made from colour and depth with views made with the scene: bytes, errors,
+// time.
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/provenance.h"
-#include "bench/quality_table.h"
 #include "bench/quality/warp_run.h"
+#include "bench/quality_table.h"
 
 #include <iomanip>
 #include <iostream>
@@ -41,21 +42,6 @@ void print_table(const nlohmann::ordered_json& json) {
     }
 }
 
-std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& json) {
-    std::vector<nlohmann::ordered_json> lines;
-    for (const nlohmann::ordered_json& row : json["rows"]) {
-        nlohmann::ordered_json line{
-            {"machine", json["processor"].get<std::string>() + "; " + json["device"].get<std::string>()},
-            {"commit", json["commit"]},
-            {"command", json["command"]},
-            {"scene", json["scene"]},
-            {"size", json["size"]}};
-        line.update(row);
-        lines.push_back(line);
-    }
-    return lines;
-}
-
 void run_warp(const WarpOptions& options) {
     const BenchmarkScene known = find_benchmark_scene(options.scene);
     WarpSettings settings = options.settings;
@@ -83,7 +69,7 @@ void run_warp(const WarpOptions& options) {
         write_csv(options.csv,
                   {"machine", "commit", "command", "scene", "size", "mode", "coding", "bytes", "ssim", "worst_ssim",
                    "rmse", "flip", "residual_percent", "extended_percent", "ms_per_view"},
-                  csv_rows(json));
+                  csv_rows(csv_origin_with_size(json), json["rows"]));
     }
 }
 
@@ -91,23 +77,25 @@ void run_warp(const WarpOptions& options) {
 
 void add_warp_command(CLI::App& app) {
     auto options = std::make_shared<WarpOptions>();
-    CLI::App* command = app.add_subcommand("warp", "Views made without the scene: bytes, errors, time");
+    CLI::App* command = app.add_subcommand("warp", "Bytes, errors and time of views made without the scene.");
     command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
-    command->add_option("--grid", options->grid, "ROWSxCOLUMNS; its corners and inner views are made")
+    command->add_option("--grid", options->grid, "Grid of views, ROWSxCOLUMNS; its corners and inner views are made.")
         ->capture_default_str();
-    command->add_option("--size", options->size, "size of source and views")->capture_default_str();
-    command->add_option("--frames", options->settings.frames, "frames from a cold start; the last is measured")
+    command->add_option("--size", options->size, "Size of source and views in pixels, WIDTHxHEIGHT.")
+        ->capture_default_str();
+    command->add_option("--frames", options->settings.frames,
+                        "Number of frames from a cold start; the last one is measured.")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--qualities", options->settings.qualities, "of lossy codecs, 1 to 100")
+    command->add_option("--qualities", options->settings.qualities, "Qualities of lossy codecs, each 1 to 100.")
         ->delimiter(',')
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     command->add_option("--out", options->settings.out,
-                        "write the views to this folder, and warp.json, for `./fieldcast bench flip`");
-    command->add_option("--device", options->device, "part of the Vulkan device's name");
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write one line per row to this file");
+                        "Write the views and warp.json to this folder, for `./fieldcast bench flip`.");
+    command->add_option("--device", options->device, "Part of the name of the Vulkan device.");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write one line per row to this CSV file.");
     command->callback([options] { run_warp(*options); });
 }
 

@@ -36,7 +36,7 @@ RenderSettings render_settings(const LightFieldScene& scene, const WarpSettings&
     return render;
 }
 
-/// Of the tile list in a frame's header: one varint per tile.
+/// Bytes of the tile list in a frame's header: one varint per tile.
 double tile_list_bytes(const std::vector<std::uint32_t>& tiles) {
     double bytes = 0.0;
     std::uint32_t next = 0;
@@ -58,7 +58,7 @@ double percent(double count, const Views& views) {
     return 100.0 * count / pixels;
 }
 
-constexpr const char* kFinished = "finished"; // pictures of what the server makes
+constexpr const char* kFinished = "finished"; // name of the server's views
 
 std::string numbered(const std::string& stem, std::size_t i) {
     return stem + "_" + std::to_string(i);
@@ -78,7 +78,7 @@ void WarpRun::run() {
     Progress progress("frames", settings_.frames);
     for (std::uint32_t frame = 0; frame < settings_.frames; ++frame) {
         scene_.pose(frame);
-        run_.render(frame, {LatticePosition{}}); // for its source
+        run_.render(frame, {LatticePosition{}}); // renders the source
         progress.add(1.0);
         if (interrupt.is_interrupted()) {
             throw Interrupted{"no results were written"};
@@ -137,7 +137,7 @@ void WarpRun::measure_views(const Views& finished, const Coding& coding) {
     add_row(std::move(row), decoded, finished);
 }
 
-// Clients with the scene make the same views, to the last bit; `codecs` has what lossy light does to them.
+// Clients with the scene make bitwise equal views. `codecs` measures the effect of lossy light.
 void WarpRun::measure_scene(const SourceFrame& frame) {
     double bytes = 0.0;
     for (const PlaneSemantic semantic : {PlaneSemantic::kDiffuse, PlaneSemantic::kSpecular}) {

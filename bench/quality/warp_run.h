@@ -9,7 +9,7 @@
 
 namespace fieldcast::bench {
 
-/// What `warp` renders and tries.
+/// Settings of `warp`.
 struct WarpSettings {
     std::vector<std::uint32_t> qualities{75, 90};
     std::uint32_t frames = 2; ///< rendered; the last one is measured
@@ -17,7 +17,7 @@ struct WarpSettings {
     std::filesystem::path out{}; ///< folder for pictures; empty: none
 };
 
-/// Makes views from one frame's colour and depth and compares them with the views that the server makes.
+/// Makes views from colour and depth of one frame and compares them with the views that the server makes.
 class WarpRun {
 public:
     WarpRun(const gpu::Device& device, LightFieldScene& scene, const WarpSettings& settings);
@@ -42,7 +42,7 @@ private:
 
     LightFieldScene& scene_;
     WarpSettings settings_;
-    std::vector<LatticePosition> positions_; ///< of the views that are made
+    std::vector<LatticePosition> positions_; ///< positions of the views that are made
     LightFieldRun run_;
     render::GridRenderer grid_renderer_;
     render::WarpPlanesRenderer planes_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench codecs`: what planes and views weigh in every codec, what that takes, and what lossy ones take away.
+// `fieldcast-bench codecs`: bytes and times of planes and views in every codec, and errors of the lossy codecs.
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/provenance.h"
@@ -36,23 +36,8 @@ void print_table(const nlohmann::ordered_json& json) {
                   << number_text(row["discard_points"], 3) << '\n';
     }
     const nlohmann::ordered_json& angle = json["coarse_normals_deg"];
-    std::cout << "normals of 8 bits a component are off by " << number_text(angle["mean"], 3) << " degrees on average, "
+    std::cout << "normals of 8 bits a component differ by " << number_text(angle["mean"], 3) << " degrees on average, "
               << number_text(angle["max"], 3) << " at most\n";
-}
-
-std::vector<nlohmann::ordered_json> csv_rows(const nlohmann::ordered_json& json) {
-    std::vector<nlohmann::ordered_json> lines;
-    for (const nlohmann::ordered_json& row : json["rows"]) {
-        nlohmann::ordered_json line{
-            {"machine", json["processor"].get<std::string>() + "; " + json["device"].get<std::string>()},
-            {"commit", json["commit"]},
-            {"command", json["command"]},
-            {"scene", json["scene"]},
-            {"size", json["size"]}};
-        line.update(row);
-        lines.push_back(line);
-    }
-    return lines;
 }
 
 void write_results(const CodecsOptions& options, const nlohmann::ordered_json& json) {
@@ -63,13 +48,13 @@ void write_results(const CodecsOptions& options, const nlohmann::ordered_json& j
         write_csv(options.csv,
                   {"machine", "commit", "command", "scene", "size", "part", "coding", "bytes", "encode_ms", "decode_ms",
                    "ssim", "discard_points"},
-                  csv_rows(json));
+                  csv_rows(csv_origin_with_size(json), json["rows"]));
     }
 }
 
 void run_codecs(const CodecsOptions& options) {
     if (options.settings.measured > options.settings.frames) {
-        throw UserError("--measured: at most the " + std::to_string(options.settings.frames) + " of --frames");
+        throw UserError("--measured: must not exceed the " + std::to_string(options.settings.frames) + " of --frames");
     }
     const BenchmarkScene known = find_benchmark_scene(options.scene);
     CodecsSettings settings = options.settings;
@@ -94,24 +79,27 @@ void run_codecs(const CodecsOptions& options) {
 
 void add_codecs_command(CLI::App& app) {
     auto options = std::make_shared<CodecsOptions>();
-    CLI::App* command = app.add_subcommand("codecs", "Bytes and times of every codec, and what lossy ones take away");
+    CLI::App* command = app.add_subcommand("codecs", "Bytes and times of every codec, and errors of the lossy ones.");
     command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
-    command->add_option("--grid", options->grid, "ROWSxCOLUMNS; its corners, an inner view and the source's are made")
+    command->add_option("--grid", options->grid,
+                        "Grid of views, ROWSxCOLUMNS; its corners, an inner view and the source's are made.")
         ->capture_default_str();
-    command->add_option("--size", options->size, "size of source and views")->capture_default_str();
-    command->add_option("--frames", options->settings.frames, "frames rendered, from a cold start")
+    command->add_option("--size", options->size, "Size of source and views in pixels, WIDTHxHEIGHT.")
+        ->capture_default_str();
+    command->add_option("--frames", options->settings.frames, "Number of rendered frames, from a cold start.")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--measured", options->settings.measured, "the last ones of these are encoded")
+    command->add_option("--measured", options->settings.measured,
+                        "Number of last frames that are encoded, at most --frames.")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--qualities", options->settings.qualities, "of lossy codecs, 1 to 100")
+    command->add_option("--qualities", options->settings.qualities, "Qualities of lossy codecs, each 1 to 100.")
         ->delimiter(',')
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    command->add_option("--device", options->device, "part of the Vulkan device's name");
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write one line per row to this file");
+    command->add_option("--device", options->device, "Part of the name of the Vulkan device.");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write one line per row to this CSV file.");
     command->callback([options] { run_codecs(*options); });
 }
 

@@ -26,12 +26,12 @@ std::string name_of(PlaneSemantic semantic) {
     return semantic == PlaneSemantic::kColour ? kView : std::string(word_of(semantic));
 }
 
-/// Whether planes of a source frame can be coded so, besides views.
+/// Whether this coding applies to planes of a source frame, not only to views.
 bool is_for_planes(const Coding& coding) {
     return carries(coding.encoding.codec, PlaneFormat::kR11G11B10F);
 }
 
-/// The corners of a grid, a view within, and the one that views are predicted from.
+/// The corners of a grid, an inner view, and the base view of prediction.
 std::vector<LatticePosition> chosen_positions(const ViewGrid& grid) {
     const std::uint32_t bottom = grid.rows - 1;
     const std::uint32_t right = grid.cols - 1;
@@ -89,7 +89,7 @@ CodecsRun::CodecsRun(const gpu::Device& device, LightFieldScene& scene, const Co
       coarse_(device, scene.gpu_scene()) {
     for (const Coding& coding : codings_) {
         const bool loses_light = is_lossy(coding.encoding.codec) && is_for_planes(coding);
-        const bool loses_kinds = loses_light || coding.name == "zstd"; // one plane of light is a loss by itself
+        const bool loses_kinds = loses_light || coding.name == "zstd"; // one plane of light is lossy by itself
         const auto make_renderer = [&] { return std::make_unique<render::GridRenderer>(device, scene.gpu_scene()); };
         renderers_.push_back(loses_light ? make_renderer() : nullptr);
         merged_.push_back(loses_kinds ? make_renderer() : nullptr);
@@ -101,7 +101,7 @@ void CodecsRun::run() {
     Progress progress("frames", settings_.frames);
     for (std::uint32_t frame = 0; frame < settings_.frames; ++frame) {
         scene_.pose(frame);
-        run_.render(frame, {LatticePosition{}}); // for its source
+        run_.render(frame, {LatticePosition{}}); // renders the source
         const SourceFrame source = run_.source().download(render::kSourceSemantics);
         if (frame + settings_.measured >= settings_.frames) {
             measure(source);
@@ -187,7 +187,7 @@ void CodecsRun::measure_views(const Views& views, const Coding& coding) {
     for (std::size_t i = 0; i < views.views.size(); ++i) {
         const Plane& image = views.views[i].image;
         if (coding.uses_base && views.views[i].position == base) {
-            continue; // it stands alone
+            continue; // it is not predicted
         }
         const Plane* const before = views_before_.views.empty() ? nullptr : &views_before_.views[i].image;
         if (coding.uses_key_frame && before == nullptr) {

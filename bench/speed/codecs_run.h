@@ -10,16 +10,16 @@
 
 namespace fieldcast::bench {
 
-/// What `codecs` renders and tries.
+/// Settings of `codecs`.
 struct CodecsSettings {
     std::vector<std::uint32_t> qualities{50, 75, 90};
     std::uint32_t frames = 8;
-    std::uint32_t measured = 2; ///< of these the last ones, at least one fewer than all
+    std::uint32_t measured = 2; ///< number of last frames that are measured, fewer than `frames`
     float exposure = 0.0F;      ///< 0: automatic
 };
 
-/// Encodes the planes and views of a scene's frames in every way, and makes views from what lossy ones leave of the
-/// light.
+/// Encodes the planes and views of a scene's frames in every coding, and makes views from the decoded light of lossy
+/// codings.
 class CodecsRun {
 public:
     CodecsRun(const gpu::Device& device, LightFieldScene& scene, const CodecsSettings& settings);
@@ -27,26 +27,26 @@ public:
     /// Throws Interrupted.
     void run();
 
-    /// source_size, guard_band_share, frames, view_count, coarse_normals_deg (how far normals of 8 bits a component are
-    /// from those of 16: mean of the last frame, and max), and `rows`: part (a plane, "light": DIFFUSE and SPECULAR,
-    /// "total light": TOTAL_LIGHT in their place, or "view": one view), coding, bytes, encode_ms, decode_ms, ssim,
-    /// discard_points. Bytes are means, times medians over frames and views. ssim of light, total light and coarse
-    /// normals is that of the views made from them; null for lossless codings.
+    /// source_size, guard_band_share, frames, view_count, coarse_normals_deg (angle between normals of 8 bits a
+    /// component and those of 16: mean of the last frame, and max), and `rows`: part (a plane, "light": DIFFUSE and
+    /// SPECULAR, "total light": TOTAL_LIGHT in their place, or "view": one view), coding, bytes, encode_ms, decode_ms,
+    /// ssim, discard_points. Bytes are means, times medians over frames and views. ssim of light, total light and
+    /// coarse normals is that of the views made from them; null for lossless codings.
     nlohmann::ordered_json result() const;
 
 private:
-    /// What was measured of one part in one coding, plane by plane or view by view.
+    /// Measurements of one part in one coding, per plane or view.
     struct Samples {
         std::vector<double> bytes;
         std::vector<double> encode_ms;
         std::vector<double> decode_ms;
-        std::vector<double> ssim;           ///< of views with the same without coding
-        std::vector<double> discard_points; ///< change of the share of discarded pixels, percent
+        std::vector<double> ssim;           ///< of views against the same views without coding
+        std::vector<double> discard_points; ///< change of the share of discarded pixels, percentage points
 
         void add(const CodedPlane& coded);
     };
     void measure(const SourceFrame& frame);
-    /// Encodes the planes that the coding fits; the result has the decoded ones in their place.
+    /// Encodes the planes to which the coding applies; the result contains the decoded planes instead.
     SourceFrame measure_planes(const SourceFrame& frame, const Coding& coding);
     void measure_coarse_normals(SourceFrame frame, const Views& uncoded);
     void measure_total_light(const SourceFrame& frame, const Views& uncoded);
@@ -59,16 +59,16 @@ private:
     LightFieldScene& scene_;
     CodecsSettings settings_;
     std::vector<Coding> codings_;
-    std::vector<LatticePosition> positions_; ///< of the views that are made
+    std::vector<LatticePosition> positions_; ///< positions of the views that are made
     LightFieldRun run_;
     render::SourcePlanes planes_;
     render::SurfacePlanesRenderer surfaces_;
     render::GridRenderer uncoded_;
-    render::GridRenderer coarse_; ///< of coarse normals
-    std::vector<std::unique_ptr<render::GridRenderer>> renderers_; ///< of each coding that changes light, else null
+    render::GridRenderer coarse_; ///< makes views from coarse normals
+    std::vector<std::unique_ptr<render::GridRenderer>> renderers_; ///< one per coding that changes light, else null
     std::vector<std::unique_ptr<render::GridRenderer>>
-        merged_; ///< likewise, of total light; also of one lossless coding
-    SourceFrame before_;                                           ///< the frame before
+        merged_; ///< the same for total light; also for one lossless coding
+    SourceFrame before_;                                           ///< the previous frame
     double mean_angle_deg_ = 0.0;    ///< between normals and coarse ones, last frame
     double largest_angle_deg_ = 0.0; ///< of all frames
     Views views_before_;                                           ///< empty in the first frame that is measured

@@ -25,7 +25,7 @@ struct CompareOptions {
     double exposure = 1.0;
 };
 
-/// One file: its linear values if it has them, and what is shown.
+/// The image of one file: linear values if the file has them, and display-referred values.
 struct Picture {
     std::optional<image::RgbF32> linear;
     image::RgbF32 display;
@@ -86,13 +86,14 @@ void run_compare(const CompareOptions& options) {
 
 void add_compare_command(CLI::App& app) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand("compare", "RMSE, SSIM and PSNR of an image file against another");
-    command->add_option("image", options->image, "PNG, JPEG, WebP (display-referred), EXR or HDR (linear)")->required();
-    command->add_option("reference", options->reference, "what it should look like, of the same size")->required();
-    command->add_option("--exposure", options->exposure, "of linear files")
+    CLI::App* command = app.add_subcommand("compare", "RMSE, SSIM and PSNR of one image file against another.");
+    command->add_option("image", options->image, "Image file: PNG, JPEG, WebP (display-referred), EXR or HDR (linear).")
+        ->required();
+    command->add_option("reference", options->reference, "Reference image of the same size.")->required();
+    command->add_option("--exposure", options->exposure, "Exposure of linear files.")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command->add_option("--json", options->json, "write the results to this file");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
     command->callback([options] { run_compare(*options); });
 }
 

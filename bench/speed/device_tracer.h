@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "core/scene/acceleration.h"
 #include "core/scene/gpu_scene.h"
 #include "shaders/shared/trace_rays.h"
@@ -10,7 +10,7 @@
 
 namespace fieldcast::bench {
 
-/// Which surfaces count; as kTrace… in shaders/lib/traversal.glsl.
+/// Surfaces that rays can hit, as kTrace… in shaders/lib/traversal.glsl.
 enum class TraceMode : std::uint32_t { kSolid = 0, kBlend = 1, kStochastic = 2 };
 
 /// A batch of rays on the device, with room for results.
@@ -35,12 +35,12 @@ private:
 /// Traces batches of rays on the device, through the kernels trace_rays_*.
 class DeviceTracer {
 public:
-    /// Geometry only: every surface is solid.
+    /// Traces geometry only: all surfaces are opaque.
     DeviceTracer(const gpu::Device& device, const scene::Acceleration& acceleration, scene::Traversal traversal);
-    /// With the alpha tests of the scene's materials.
+    /// Traces with the alpha tests of the scene's materials.
     DeviceTracer(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// Both wait for the device and return seconds from submission to completion.
+    /// Both block until the device has finished and return seconds from submission to completion.
     double trace_closest(const DeviceRays& rays, TraceMode mode = TraceMode::kSolid, std::uint32_t seed = 0);
     double trace_any(const DeviceRays& rays);
 
@@ -54,7 +54,7 @@ private:
     gpu::BindingLayout rays_layout_;
     gpu::Kernel closest_;
     gpu::Kernel any_;
-    gpu::Recorder recorder_;
+    gpu::CommandRecorder recorder_;
 };
 
 } // namespace fieldcast::bench

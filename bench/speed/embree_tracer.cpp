@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;
 
-/// Embree advises to flush denormals in tracing threads.
+/// Flushes denormals in a tracing thread, as Embree recommends.
 class FlushDenormals {
 public:
     FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040U); }
@@ -111,7 +111,7 @@ struct EmbreeTracer::State {
 };
 
 EmbreeTracer::EmbreeTracer(const scene::Scene& scene, const scene::ScenePose& pose) : state_(new State) {
-    FC_ASSERT(state_->device != nullptr, "Embree does not start");
+    FC_ASSERT(state_->device != nullptr, "Embree failed to start");
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const scene::Instance& instance = scene.instances[i];
         if (!scene.meshes[instance.mesh].triangles.empty()) {

@@ -16,7 +16,7 @@ struct SurfaceHit {
     glm::vec3 normal{0.0F}; ///< geometric, unit length, world space
 };
 
-/// The yardstick: Embree with one flattened scene in world space, one ray at a time, all surfaces opaque.
+/// The baseline: Embree with one flattened scene in world space, one ray at a time, all surfaces opaque.
 class EmbreeTracer {
 public:
     EmbreeTracer(const scene::Scene& scene, const scene::ScenePose& pose);
@@ -26,10 +26,10 @@ public:
 
     SurfaceHit closest(const shared::TraceRay& ray) const;
 
-    /// rtcIntersect1 for every ray on `threads` threads that take chunks as they go. Returns seconds.
+    /// Calls rtcIntersect1 for every ray on `threads` threads, which take chunks dynamically. Returns seconds.
     double trace_closest(std::span<const shared::TraceRay> rays, std::span<shared::TraceHit> hits,
                          std::uint32_t threads) const;
-    /// rtcOccluded1 likewise; writes 0 (blocked) or 1.
+    /// Does the same with rtcOccluded1; writes 0 (blocked) or 1. Returns seconds.
     double trace_any(std::span<const shared::TraceRay> rays, std::span<float> transmittances,
                      std::uint32_t threads) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench fanout`: what one more client costs the server's processor, against a bare gRPC stream.
+// `fieldcast-bench fanout`: CPU time of the server per additional client, against a bare gRPC stream.
 #include "bench/commands.h"
 #include "bench/csv.h"
 #include "bench/fanout/fanout_run.h"
@@ -30,7 +30,7 @@ struct FanoutOptions {
     double window_s = 2.0;
 };
 
-/// A folder for this run; removed with everything in it.
+/// A temporary folder for this run; removed with its content.
 struct TemporaryFolder {
     TemporaryFolder()
         : path(std::filesystem::temp_directory_path() / ("fieldcast-fanout-" + std::to_string(getpid()))) {
@@ -51,7 +51,7 @@ std::filesystem::path server_program() {
     return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "server/fieldcast-server";
 }
 
-/// Renders what is replayed if nobody has said what to replay; once.
+/// Renders the default recording if it does not exist. Throws UserError if another recording does not exist.
 void make_recording(const fanout::FanoutSettings& settings, const std::filesystem::path& folder) {
     if (std::filesystem::exists(settings.recording)) {
         return;
@@ -72,7 +72,7 @@ void make_recording(const fanout::FanoutSettings& settings, const std::filesyste
 
 void check(const fanout::FanoutSettings& settings) {
     if (std::set(settings.clients.begin(), settings.clients.end()).size() < 2) {
-        throw UserError("--clients: name at least two numbers; what one more client costs is the slope between them");
+        throw UserError("--clients: give at least two numbers; the cost of a client is the slope between them");
     }
     if (!std::filesystem::exists(settings.server)) {
         throw UserError("--server " + settings.server.string() +
@@ -145,26 +145,21 @@ void print_table(const Json& json) {
                   << spread["median"].get<double>() << "  (" << spread["smallest"].get<double>() << " to "
                   << spread["largest"].get<double>() << ")\n";
     };
-    std::cout << "one more client, CPU ms per MB      median of rounds (least to most)\n";
+    std::cout << "additional client, CPU ms per MB    median of rounds (least to most)\n";
     line("  fieldcast-server", "served_ms_per_megabyte");
     line("  bare gRPC", "bare_ms_per_megabyte");
     line("  ratio", "ratio");
 }
 
-std::vector<Json> csv_rows(const Json& json) {
-    std::vector<Json> lines;
-    for (const Json& row : json["rows"]) {
-        Json line{{"machine", json["processor"]},
-                  {"commit", json["commit"]},
-                  {"command", json["command"]},
-                  {"megabytes_per_frame", json["megabytes_per_frame"]},
-                  {"messages_per_frame", json["messages_per_frame"]},
-                  {"window_s", json["window_s"]},
-                  {"ratio", json["ratio"]["median"]}};
-        line.update(row);
-        lines.push_back(line);
-    }
-    return lines;
+/// The first columns of every line.
+Json origin_of(const Json& json) {
+    return {{"machine", json["processor"]},
+            {"commit", json["commit"]},
+            {"command", json["command"]},
+            {"megabytes_per_frame", json["megabytes_per_frame"]},
+            {"messages_per_frame", json["messages_per_frame"]},
+            {"window_s", json["window_s"]},
+            {"ratio", json["ratio"]["median"]}};
 }
 
 std::vector<fanout::Round> measure(fanout::FanoutRun& run, const fanout::FanoutSettings& settings) {
@@ -206,7 +201,7 @@ void run_fanout(const FanoutOptions& options) {
         write_csv(options.csv,
                   {"machine", "commit", "command", "megabytes_per_frame", "messages_per_frame", "window_s", "round",
                    "kind", "clients", "cpu_ms", "megabytes", "frames", "ratio"},
-                  csv_rows(json));
+                  csv_rows(origin_of(json), json["rows"]));
     }
 }
 
@@ -218,25 +213,27 @@ void add_fanout_command(CLI::App& app) {
     settings.server = server_program();
     settings.recording = kDefaultRecording;
     CLI::App* command =
-        app.add_subcommand("fanout", "Processor time that one more client costs, against a bare gRPC stream");
-    command->add_option("--recording", settings.recording, "what the server replays; the default is rendered once")
+        app.add_subcommand("fanout", "CPU time per additional client, against a bare gRPC stream.");
+    command->add_option("--recording", settings.recording,
+                        "Recording that the server replays; the default one is rendered once.")
         ->capture_default_str();
-    command->add_option("--clients", settings.clients, "numbers of clients at a time, at least two")
+    command->add_option("--clients", settings.clients, "Numbers of simultaneous clients, at least two numbers.")
         ->delimiter(',')
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
-    command->add_option("--rounds", settings.rounds, "each measures both servers with every number of clients")
+    command->add_option("--rounds", settings.rounds,
+                        "Number of rounds; each measures both servers with every number of clients.")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command->add_option("--seconds", options->window_s, "of each measurement")
+    command->add_option("--seconds", options->window_s, "Seconds of each measurement.")
         ->check(CLI::Range(0.1, 600.0))
         ->capture_default_str();
-    command->add_option("--fps", settings.frames_per_second, "frames per second of both servers")
+    command->add_option("--fps", settings.frames_per_second, "Frames per second of both servers.")
         ->check(CLI::Range(0.1, 240.0))
         ->capture_default_str();
-    command->add_option("--server", settings.server, "the program to measure; default: of this build");
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--csv", options->csv, "write one line per measurement to this file");
+    command->add_option("--server", settings.server, "Program of the server to measure (default: that of this build).");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--csv", options->csv, "Write one line per measurement to this CSV file.");
     command->footer("\nExamples:\n"
                     "  fieldcast-bench fanout\n"
                     "  fieldcast-bench fanout --clients 1,32 --rounds 3 --csv out/fanout.csv\n"

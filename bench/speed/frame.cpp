@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench frame`: where the time of one frame goes, stage by stage (the paper's figure 3).
+// `fieldcast-bench frame`: times of the stages of a frame (the paper's figure 3).
 #include "bench/commands.h"
 #include "bench/interrupt.h"
 #include "bench/light_field_run.h"
@@ -38,10 +38,10 @@ struct FrameOptions {
     bool guard_band = true;
     std::string preset = "default";
     std::string holes; ///< empty: the preset's
-    RenderSettings settings; ///< samples, bounces and next event estimation count
+    RenderSettings settings; ///< only samples, bounces and next event estimation are used
 };
 
-/// The preset with what was asked for besides. Throws UserError.
+/// The preset with the changes of the command line. Throws UserError.
 Preset chosen_preset(const FrameOptions& options, const ViewGrid& grid, float exposure) {
     std::optional<Preset> preset = find_preset(options.preset, grid.rows, grid.cols);
     if (!preset) {
@@ -59,13 +59,13 @@ Preset chosen_preset(const FrameOptions& options, const ViewGrid& grid, float ex
     return *preset;
 }
 
-/// What one frame took and did.
+/// Times and counts of one frame.
 struct FrameSample {
     std::vector<StageTime> stages{};
     double source_paths = 0.0; ///< paths that start on a surface
     double hole_paths = 0.0;
     double hole_pixels = 0.0;
-    double synthesised_pixels = 0.0; ///< of all views but the source's own
+    double synthesised_pixels = 0.0; ///< pixels of all views except the source's own
 };
 
 double stage_ms(const FrameSample& sample, const std::string& stage) {
@@ -173,7 +173,7 @@ void print_guard_band(const GuardBandChoice& guard) {
               << std::llround(100.0 * guard.removed_share) << " % of the out-of-frustum pixels removed)" << std::endl;
 }
 
-/// The frames after warm-up; `views` become those of the last one. Throws Interrupted.
+/// Measures the frames after warm-up; `views` receives those of the last frame. Throws Interrupted.
 std::vector<FrameSample> measure_frames(LightFieldScene& scene, LightFieldRun& run, const FrameOptions& options,
                                         Views& views) {
     std::vector<FrameSample> samples;
@@ -224,34 +224,46 @@ void run_frame(const FrameOptions& options) {
 
 void add_frame_command(CLI::App& app) {
     auto options = std::make_shared<FrameOptions>();
-    CLI::App* command = app.add_subcommand("frame", "Stage times of one frame; medians over frames after warm-up");
+    CLI::App* command = app.add_subcommand("frame",
+                                           "Stage times of one frame; medians over the frames after warm-up (the "
+                                           "paper's figure 3).");
     command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
-    command->add_option("--environment", options->environment, ".hdr or .exr environment");
-    command->add_option("--grid", options->grid, "ROWSxCOLUMNS of views")->capture_default_str();
-    command->add_option("--size", options->size, "size of source and views")->capture_default_str();
-    command->add_option("--spacing", options->spacing_m, "metres between views (default: the camera's, else 0.03)");
-    command->add_option("--exposure", options->exposure, "default: the named scene's; automatic for a file");
-    command->add_option("--frames", options->frames, "frames measured")
+    command->add_option("--environment", options->environment,
+                        "Environment, a .hdr or .exr file (default: the scene's own).");
+    command->add_option("--grid", options->grid, "Grid of views, ROWSxCOLUMNS.")->capture_default_str();
+    command->add_option("--size", options->size, "Size of source and views in pixels, WIDTHxHEIGHT.")
+        ->capture_default_str();
+    command->add_option("--spacing", options->spacing_m,
+                        "Distance of neighbouring views in metres (default: the camera's, else 0.03).");
+    command->add_option("--exposure", options->exposure,
+                        "Exposure (default: that of the named scene; automatic for a file).");
+    command->add_option("--frames", options->frames, "Number of measured frames.")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    command->add_option("--warm-up", options->warm_up, "frames before them")->capture_default_str();
-    command->add_option("--spp", options->settings.samples_per_pixel)
+    command->add_option("--warm-up", options->warm_up, "Number of frames before the measured ones.")
+        ->capture_default_str();
+    command->add_option("--spp", options->settings.samples_per_pixel, "Samples per pixel of the source.")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    command->add_option("--bounces", options->settings.max_bounces)->check(CLI::Range(1, 64))->capture_default_str();
-    command->add_flag("!--no-nee", options->settings.next_event_estimation, "without next event estimation");
-    command->add_flag("!--no-guard-band", options->guard_band, "source without guard band, as in the paper");
-    command->add_option("--preset", options->preset, "how views are made: " + preset_names())->capture_default_str();
-    command->add_option("--holes", options->holes,
-                        "instead of the preset's: all, none (path traced), or a list of "
-                        "previous,isolated,cascade,source,denoise");
-    command->add_option("--device", options->device, "part of the Vulkan device's name");
-    command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
-    command->add_option("--visibility", options->visibility, "How views are made visible: auto, rays or raster")
+    command->add_option("--bounces", options->settings.max_bounces, "Largest number of bounces.")
+        ->check(CLI::Range(1, 64))->capture_default_str();
+    command->add_flag("!--no-nee", options->settings.next_event_estimation, "Disable next event estimation.");
+    command->add_flag("!--no-guard-band", options->guard_band,
+                      "Render the source without guard band, as in the paper.");
+    command->add_option("--preset", options->preset, "Preset that makes the views: " + preset_names() + ".")
         ->capture_default_str();
-    command->add_option("--json", options->json, "write the results to this file");
-    command->add_option("--html", options->html, "write a report with charts to this file");
-    command->add_option("--out", options->out, "write the last frame's views to this folder");
+    command->add_option("--holes", options->holes,
+                        "Hole filling: all, none (path traced), or a list of "
+                        "previous,isolated,cascade,source,denoise (default: the preset's).");
+    command->add_option("--device", options->device, "Part of the name of the Vulkan device.");
+    command->add_option("--traversal", options->traversal, "Ray traversal: auto, bvh or rayquery.")
+        ->capture_default_str();
+    command->add_option("--visibility", options->visibility,
+                        "Visibility method for views: rays, raster, or auto (the faster one).")
+        ->capture_default_str();
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
+    command->add_option("--html", options->html, "Write a report with charts to this HTML file.");
+    command->add_option("--out", options->out, "Write the views of the last frame to this folder.");
     command->callback([options] { run_frame(*options); });
 }
 

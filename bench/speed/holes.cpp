@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench holes`: what each stage of hole filling saves and what it does to the picture.
+// `fieldcast-bench holes`: savings and errors of each stage of hole filling.
 #include "bench/commands.h"
 #include "bench/light_field_run.h"
 
@@ -22,7 +22,7 @@ struct HoleOptions {
     std::uint32_t reference_samples = 64;
 };
 
-/// One choice of stages and what came of it, over the frames measured.
+/// One choice of stages and its results over the measured frames.
 struct Variant {
     std::string name;
     HoleFilling holes;
@@ -78,7 +78,8 @@ public:
         header_.settings.exposure = render::auto_exposure(reference_, source_.render(header_));
     }
 
-    /// Every variant makes the frame; with `reference_samples` > 0 it is compared with holes of so many samples.
+    /// Renders the frame with every variant. If `reference_samples` > 0, holes are compared with ones of that many
+    /// samples.
     void render(std::uint32_t frame, std::uint32_t reference_samples) {
         pose(frame);
         SourceFrame wire = source_.render(header_).download(render::kSourceSemantics);
@@ -171,7 +172,7 @@ nlohmann::ordered_json to_json(const Variant& v, std::uint32_t frames) {
 void run_holes(const HoleOptions& options) {
     const gpu::Device device({.name_contains = options.device});
     HoleRun run(device, options);
-    constexpr std::uint32_t kScored = 2; // the last frames: histories are settled
+    constexpr std::uint32_t kScored = 2; // the last frames, in which histories are settled
     for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
         run.render(frame, frame + kScored >= options.frames ? options.reference_samples : 0);
         std::cerr << "\rframe " << frame + 1 << " of " << options.frames << std::flush;
@@ -203,18 +204,19 @@ void run_holes(const HoleOptions& options) {
 
 void add_holes_command(CLI::App& app) {
     auto options = std::make_shared<HoleOptions>();
-    CLI::App* command = app.add_subcommand("holes", "What each stage of hole filling saves, and the error it leaves");
+    CLI::App* command = app.add_subcommand("holes", "Savings and remaining error of each stage of hole filling.");
     command->add_option("--scene", options->scene, describe_scene_option())->capture_default_str();
-    command->add_option("--grid", options->grid, "ROWSxCOLUMNS of views")->capture_default_str();
-    command->add_option("--size", options->size, "size of source and views")->capture_default_str();
-    command->add_option("--frames", options->frames, "frames rendered; the last two are measured")
+    command->add_option("--grid", options->grid, "Grid of views, ROWSxCOLUMNS.")->capture_default_str();
+    command->add_option("--size", options->size, "Size of source and views in pixels, WIDTHxHEIGHT.")
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Number of rendered frames; the last two are measured.")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
-    command->add_option("--reference-spp", options->reference_samples, "samples of the holes compared with")
+    command->add_option("--reference-spp", options->reference_samples, "Samples per pixel of the reference for holes.")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
-    command->add_option("--device", options->device, "part of the Vulkan device's name");
-    command->add_option("--json", options->json, "write the results to this file");
+    command->add_option("--device", options->device, "Part of the name of the Vulkan device.");
+    command->add_option("--json", options->json, "Write the results to this JSON file.");
     command->callback([options] { run_holes(*options); });
 }
 

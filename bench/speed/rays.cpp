@@ -17,7 +17,7 @@ constexpr std::uint32_t kTilePx = 8;
 constexpr std::uint32_t kSeed = 20220701;
 constexpr float kFar = std::numeric_limits<float>::max();
 
-/// Moves a point off its surface by a few rounding errors of its position.
+/// Moves a point away from its surface by a few rounding errors of its position.
 glm::vec3 offset_point(const glm::vec3& point, const glm::vec3& normal) {
     const glm::vec3 magnitude = glm::max(glm::abs(point), glm::vec3(1.0F));
     return point + normal * 3e-6F * std::max({magnitude.x, magnitude.y, magnitude.z});
@@ -49,7 +49,7 @@ glm::vec3 cosine_direction(const glm::vec3& normal, float u, float v) {
                           normal * std::sqrt(1.0F - u));
 }
 
-/// Towards the first directional light; straight up without one.
+/// Direction to the first directional light; straight up if there is none.
 glm::vec3 sun_direction(const scene::Scene& scene, const scene::ScenePose& pose) {
     for (const scene::Light& light : scene.lights) {
         if (light.type == scene::LightType::kDirectional) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `fieldcast-bench trace`: the same rays through our kernels and through Embree, repetitions interleaved, medians.
+// `fieldcast-bench trace`: traces the same rays with our kernels and with Embree; medians of interleaved repetitions.
 #include "bench/commands.h"
 #include "bench/measure.h"
 #include "bench/speed/device_tracer.h"
@@ -28,15 +28,15 @@ struct TraceOptions {
     double time_s = 0.0;
 };
 
-/// One kind of rays, and what is aimed at.
+/// One kind of rays, and its target.
 struct RayKind {
     const char* name;
     std::span<const shared::TraceRay> rays;
-    bool any;      ///< any hit will do
-    double target; ///< of ours to Embree's rays per second, on software Vulkan
+    bool any;      ///< any hit ends a ray
+    double target; ///< ratio of our rays per second to Embree's, on software Vulkan
 };
 
-/// One way to trace, with the seconds of each repetition.
+/// One tracer, with the seconds of each repetition.
 struct Contender {
     std::string name;
     DeviceTracer* tracer;
@@ -46,7 +46,7 @@ struct Contender {
 struct KindResult {
     double embree_mrays_per_s = 0.0;
     std::vector<double> mrays_per_s; ///< one per contender
-    double agreement = 0.0;          ///< part of the rays for which the first contender and Embree meet the same
+    double agreement = 0.0;          ///< share of rays for which the first contender and Embree hit the same
 };
 
 double agreement(const DeviceRays& rays, std::span<const shared::TraceHit> hits, std::span<const float> blocked,
@@ -84,7 +84,7 @@ KindResult run_kind(const gpu::Device& device, const RayKind& kind, std::span<Co
         for (Contender& contender : contenders) {
             contender.seconds.push_back(trace(contender));
         }
-        if (repetition == 0) { // warm-up: kernels were compiled, caches filled
+        if (repetition == 0) { // warm-up: compiles kernels and fills caches
             embree_seconds.clear();
             std::for_each(contenders.begin(), contenders.end(), [](Contender& c) { c.seconds.clear(); });
         }
@@ -178,16 +178,17 @@ void run_trace(const TraceOptions& options) {
 } // namespace
 
 void add_trace_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("trace", "Rays per second of the traversal kernels against Embree");
+    CLI::App* command = app.add_subcommand("trace", "Rays per second of the traversal kernels against Embree.");
     auto options = std::make_shared<TraceOptions>();
-    command->add_option("--scene", options->scene, "glTF file")->capture_default_str();
-    command->add_option("--size", options->size, "image, WIDTHxHEIGHT")->capture_default_str();
-    command->add_option("--time", options->time_s, "scene time in seconds")->capture_default_str();
-    command->add_option("--repeat", options->repeat, "timed repetitions")->check(CLI::Range(1, 1000));
-    command->add_option("--threads", options->threads, "threads for Embree")->check(CLI::Range(1, 1024));
-    command->add_option("--device", options->device, "first Vulkan device whose name contains this");
-    command->add_option("--traversal", options->traversal, "auto, bvh or rayquery")->capture_default_str();
-    command->add_option("--json", options->json, "also write the results to this file");
+    command->add_option("--scene", options->scene, "glTF file.")->capture_default_str();
+    command->add_option("--size", options->size, "Size of the image in pixels, WIDTHxHEIGHT.")->capture_default_str();
+    command->add_option("--time", options->time_s, "Time in the scene, in seconds.")->capture_default_str();
+    command->add_option("--repeat", options->repeat, "Number of timed repetitions.")->check(CLI::Range(1, 1000));
+    command->add_option("--threads", options->threads, "Number of threads for Embree.")->check(CLI::Range(1, 1024));
+    command->add_option("--device", options->device, "Part of the name of the Vulkan device; the first match is used.");
+    command->add_option("--traversal", options->traversal, "Ray traversal: auto, bvh or rayquery.")
+        ->capture_default_str();
+    command->add_option("--json", options->json, "Also write the results to this JSON file.");
     command->callback([options] { run_trace(*options); });
 }
 

@@ -115,7 +115,7 @@ Driver::Work Driver::wait_for_work(const std::stop_token& stop, bool has_left) {
     return {std::exchange(mail->changed, {}), mail->is_finishing};
 }
 
-/// A client that is not gone has exactly one alarm.
+/// Runs a client and replaces its alarm; a client that has left has none.
 void Driver::run_client(std::size_t client) {
     LoadClient& each = *clients_[client];
     const TimePoint next = each.is_gone() ? TimePoint::max() : each.run();

@@ -12,12 +12,12 @@
 
 namespace fieldcast::client::load {
 
-/// A thread that looks after many clients: sleeps until a message has come for one of them or one has something to do.
+/// A thread that runs many clients: it sleeps until a message arrives for one of them or one has something to do.
 class Driver {
 public:
-    /// A client to be: group, seed, start.
+    /// A client to create: group, seed, start.
     struct Start {
-        std::size_t group = 0; ///< of the scenario
+        std::size_t group = 0; ///< index in the scenario
         std::uint32_t seed = 0;
         LoadClient::TimePoint at;
     };
@@ -27,22 +27,22 @@ public:
     Driver(const Driver&) = delete;
     Driver& operator=(const Driver&) = delete;
 
-    /// What the clients of a group have seen so far.
+    /// Counts of all clients of a group so far.
     Tally tally_of(std::size_t group) { return *tallies_[group].lock(); }
 
-    /// All clients leave. Returns at once.
+    /// Makes all clients leave. Returns at once.
     void begin_to_finish();
 
-    /// Waits for that, a few seconds at most. Returns why the thread failed, if it did.
+    /// Waits until all clients have left, a few seconds at most. Returns why the thread failed, if it did.
     std::optional<std::string> finish();
 
-    /// After `finish`.
+    /// Call it after `finish`.
     std::vector<ClientShare> shares_of(std::size_t group) const;
 
 private:
     using TimePoint = LoadClient::TimePoint;
     struct Mail {
-        std::deque<std::size_t> changed; ///< clients, each once
+        std::deque<std::size_t> changed; ///< indices of clients, each once
         std::vector<bool> is_in;
         bool is_finishing = false;
         std::optional<std::string> failure;
@@ -54,7 +54,7 @@ private:
     };
 
     void add_clients(const Scenario& scenario, const Window& window);
-    void note(std::size_t client); ///< from any thread: something came for it
+    void note(std::size_t client); ///< from any thread: there is a message for it
     void run(const std::stop_token& stop);
     void drive(const std::stop_token& stop);
     Work wait_for_work(const std::stop_token& stop, bool has_left);
@@ -67,8 +67,8 @@ private:
     Guarded<Mail> mail_;
     std::vector<Start> starts_;
     std::vector<std::unique_ptr<LoadClient>> clients_;
-    std::set<std::pair<TimePoint, std::size_t>> alarms_; ///< when to run which client at the latest
-    std::vector<TimePoint> alarm_of_;                    ///< of a client; max: none
+    std::set<std::pair<TimePoint, std::size_t>> alarms_; ///< latest moment to run a client, and its index
+    std::vector<TimePoint> alarm_of_;                    ///< by client; max: none
     std::jthread thread_;
 };
 

@@ -14,7 +14,7 @@ constexpr std::int64_t kNsPerUs = 1000;
 std::int64_t DueSchedule::answer(std::int64_t pose_ns, std::int64_t visible_ns, const Window& window,
                                  LatencyHistogram& latencies) {
     std::int64_t longest_us = 0;
-    const std::int64_t until_ns = std::min(pose_ns, visible_ns); // clocks are in step to within half a round trip only
+    const std::int64_t until_ns = std::min(pose_ns, visible_ns); // clocks agree to within half a round trip only
     for (; next_ns_ <= until_ns; next_ns_ += period_ns_) {
         const std::int64_t latency_us = (visible_ns - next_ns_) / kNsPerUs;
         longest_us_ = std::max(longest_us_, latency_us);

@@ -10,7 +10,7 @@
 namespace fieldcast::client::load {
 namespace {
 
-// Values below 2048 have a bucket each. Above, a power of two has 1024 buckets: those of the upper half of 2048.
+// Values below 2048 have a bucket each. Above, each power of two has 1024, as the upper half of 2048 does.
 constexpr int kBits = 11;
 constexpr std::uint64_t kHalf = 1U << (kBits - 1);
 
@@ -33,7 +33,7 @@ std::int64_t end_of(std::size_t bucket) {
     return static_cast<std::int64_t>(first + (std::uint64_t{1} << shift) - 1);
 }
 
-/// The values up to the one that `share` of `count` values do not exceed: 1 … count.
+/// Rank (1 … count) of the value that `share` of `count` values do not exceed.
 std::uint64_t rank_of(double share, std::uint64_t count) {
     const double wanted = std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count));
     return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(wanted));
@@ -106,7 +106,7 @@ std::vector<LatencyHistogram::Point> LatencyHistogram::curve(int ticks) const {
             points.push_back({std::min(end_of(i), largest_us_), share, seen});
             const double halvings = std::floor(std::log2(1.0 / (1.0 - share))) + 1.0;
             share += 1.0 / (std::exp2(halvings) * ticks);
-            if (seen == count_) { // everything beyond is the largest value
+            if (seen == count_) { // all further points are at the largest value
                 share = 1.0;
             }
         }

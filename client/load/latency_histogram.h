@@ -13,7 +13,8 @@ namespace fieldcast::client::load {
 /// Differs: one unit (microseconds) and one precision (three digits); memory grows with the largest value.
 class LatencyHistogram {
 public:
-    /// Whole microseconds. Negative values, from clocks that are out of step, count as 0; those above 19 hours as that.
+    /// Adds a value in whole microseconds. Negative values (from clocks that disagree) count as 0, values above 19
+    /// hours as 19 hours.
     void add(std::int64_t value_us, std::uint64_t times = 1);
     void add(const LatencyHistogram& other);
 
@@ -30,9 +31,9 @@ public:
     struct Point {
         std::int64_t value_us = 0;
         double share = 0.0;
-        std::uint64_t count = 0; ///< values up to here
+        std::uint64_t count = 0; ///< number of values up to this one
     };
-    /// With `ticks` points per halving of the distance to 1, the last one at 1.
+    /// The curve with `ticks` points per halving of the distance to 1; the last point is at 1.
     std::vector<Point> curve(int ticks = 5) const;
 
     /// The curve in milliseconds as text, as plotters of .hgrm files read it.

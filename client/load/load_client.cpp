@@ -13,7 +13,7 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
 constexpr auto kFinishGrace = 2s; // for the server to finish after our half-close
-constexpr double kFallbackFps = 30.0; // of the due schedule, if neither group nor server tell a rate
+constexpr double kFallbackFps = 30.0; // of the due schedule if neither the group nor the server defines one
 
 std::int64_t to_ns(LoadClient::TimePoint time) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
@@ -23,12 +23,12 @@ std::chrono::nanoseconds rounded(Seconds seconds) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(seconds);
 }
 
-/// Neighbouring seeds begin with similar numbers; these do not.
+/// Mixes the seed: generators with neighbouring seeds begin with similar numbers.
 std::uint32_t scattered(std::uint32_t seed) {
     return (seed + 1) * 2654435761U;
 }
 
-/// Adds a duration whose ends are both known.
+/// Adds a duration if both of its ends are known.
 void add_between(LatencyHistogram& histogram, std::int64_t begin_ns, std::int64_t end_ns) {
     if (begin_ns != 0 && end_ns != 0) {
         histogram.add((end_ns - begin_ns) / 1000);
@@ -75,10 +75,10 @@ LoadClient::TimePoint LoadClient::next_run() const {
 
 void LoadClient::open(TimePoint now) {
     const Group& group = *all_.group;
-    net::Session::Options options;
+    net::ClientSession::Options options;
     options.decoding = group.decoding;
     options.reading.on_change = all_.on_change;
-    if (group.max_bytes_per_second > 0.0 || group.think > 0s) { // what it has not read stays with the server
+    if (group.max_bytes_per_second > 0.0 || group.think > 0s) { // unread messages stay on the server
         options.reading.max_waiting_bytes = 1;
         options.reading.max_bytes_per_second = group.max_bytes_per_second;
     }
@@ -88,7 +88,7 @@ void LoadClient::open(TimePoint now) {
     try {
         connection_.emplace(all_.scenario->address, all_.scenario->access);
         session_.emplace(*connection_, group.request, *all_.pool, std::move(options));
-    } catch (const UserError& error) { // files of certificates or tokens may come and go
+    } catch (const UserError& error) { // files of certificates or tokens may disappear and return
         add_loss(error.what());
         close(now);
     }
@@ -100,7 +100,7 @@ void LoadClient::add_loss(const std::string& reason) {
     tally->add_reason(reason);
 }
 
-/// Cuts what is left of the session. Comes back later, unless it leaves for good.
+/// Ends the session at once. The client reconnects later, unless it leaves for good.
 void LoadClient::close(TimePoint now) {
     if (agreement_) {
         --all_.tally->lock()->connected;
@@ -116,7 +116,7 @@ void LoadClient::close(TimePoint now) {
         is_gone_ = true;
     } else if (has_churned) {
         count_presence(now);
-        end_due(now); // nobody waits while it is away
+        end_due(now); // no due moment waits while the client is away
         opens_at_ = now + rounded(spread(all_.group->away));
     } else {
         opens_at_ = now + backoff_.next();
@@ -205,8 +205,8 @@ Seconds LoadClient::due_period() const {
     return Seconds(1.0 / (agreed > 0.0 ? agreed : kFallbackFps));
 }
 
-/// The schedule begins when the client dials, at a random phase, so that clients keep no step with each other or the
-/// server. A client that comes back after a loss goes on with the one it has.
+/// The schedule begins at a random phase when the client connects, so that clients are not synchronised with each other
+/// or the server. A client that reconnects after a loss keeps its schedule.
 void LoadClient::begin_due() {
     if (!due_) {
         const Seconds period = due_period();
@@ -215,7 +215,7 @@ void LoadClient::begin_due() {
     }
 }
 
-/// The client leaves on purpose, or the window ends.
+/// Ends the schedule: the client leaves on purpose, or the window ends.
 void LoadClient::end_due(TimePoint now) {
     if (due_) {
         auto tally = all_.tally->lock();
@@ -282,7 +282,7 @@ void LoadClient::handle(const net::Ended& ended) {
     close(Clock::now());
 }
 
-/// Ends a time of presence.
+/// Ends the current time of presence and adds it to the total.
 void LoadClient::count_presence(TimePoint until) {
     if (present_since_) {
         const std::int64_t begin_ns = std::max(to_ns(*present_since_), all_.window.begin_ns);
@@ -292,7 +292,7 @@ void LoadClient::count_presence(TimePoint until) {
     }
 }
 
-/// Half to one and a half of `mean`.
+/// A random duration between 0.5 and 1.5 times `mean`.
 Seconds LoadClient::spread(Seconds mean) {
     return mean * std::uniform_real_distribution<double>(0.5, 1.5)(random_);
 }

@@ -5,7 +5,7 @@
 #include "client/load/scenario.h"
 #include "client/load/tally.h"
 #include "client/net/backoff.h"
-#include "client/net/session.h"
+#include "client/net/client_session.h"
 #include "core/base/guarded.h"
 
 #include <functional>
@@ -14,8 +14,8 @@
 
 namespace fieldcast::client::load {
 
-/// One client of a group: comes, reads, leaves and comes back as the group says, and tells a tally what it saw.
-/// Belongs to one thread and never waits in it, but for gRPC to let go of a stream that is cut.
+/// One client of a group: connects, reads, leaves and returns as the group defines, and records its frames in a tally.
+/// Belongs to one thread and does not block it, except until gRPC has released a cancelled stream.
 class LoadClient {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
@@ -24,21 +24,21 @@ public:
         const Scenario* scenario = nullptr;
         const Group* group = nullptr;
         Window window;
-        WorkerPool* pool = nullptr; ///< decodes
+        WorkerPool* pool = nullptr; ///< decodes frames
         Guarded<Tally>* tally = nullptr;
         std::function<void()> on_change{}; ///< from any thread: call `run` soon
     };
 
     LoadClient(Surroundings surroundings, std::uint32_t seed, TimePoint starts_at);
 
-    /// Does what there is to do. Returns when to call again although nothing has changed.
+    /// Does all pending work. Returns when to call it again at the latest.
     TimePoint run();
 
-    /// Half-closes, and does not come back. The window ends now, if it has not ended before. Call it once.
+    /// Half-closes the stream and does not reconnect. The window ends now, unless it has ended before. Call it once.
     void leave_for_good();
     bool is_gone() const { return is_gone_; }
 
-    /// Complete after `leave_for_good`.
+    /// The client's counts; complete after `leave_for_good`.
     ClientShare share() const { return share_; }
 
 private:
@@ -55,7 +55,7 @@ private:
     void handle(const net::FrameAborted& aborted);
     void handle(const net::Refused& refused);
     void handle(const net::GoingAway& going);
-    void handle(const net::SteeringNews&) {} // it never asks to steer
+    void handle(const net::SteeringNews&) {} // it never requests to steer
     void handle(const net::Ended& ended);
     void add_stages(const net::FrameArrived& frame, Tally& tally);
     void answer_due(const net::FrameArrived& frame, Tally& tally);
@@ -70,17 +70,17 @@ private:
     std::minstd_rand random_;
     net::Backoff backoff_;
     std::optional<net::Connection> connection_;
-    std::optional<net::Session> session_; ///< after what it needs
+    std::optional<net::ClientSession> session_; ///< declared after the members that it uses
     std::optional<net::Agreement> agreement_;
     std::optional<DueSchedule> due_;
-    std::optional<std::uint64_t> last_frame_id_; ///< of this session
+    std::optional<std::uint64_t> last_frame_id_; ///< in this session
     std::optional<std::int64_t> last_frame_ns_;  ///< when it was decoded
     TimePoint opens_at_;
     TimePoint opened_at_;
     TimePoint thinks_until_{};
-    std::optional<TimePoint> leaves_at_;    ///< churn
-    std::optional<TimePoint> cut_at_;       ///< half-closed; the server has so long to finish
-    std::optional<TimePoint> present_since_; ///< it wants frames
+    std::optional<TimePoint> leaves_at_;    ///< end of this stay (churn)
+    std::optional<TimePoint> cut_at_;       ///< after half-closing: when to cancel if the server has not finished
+    std::optional<TimePoint> present_since_; ///< since when it wants frames
     bool is_leaving_for_good_ = false;
     bool is_gone_ = false;
     ClientShare share_;

@@ -36,7 +36,7 @@ double measured(Quantity quantity, const GroupResult& result) {
     return 0.0;
 }
 
-/// A latency without values holds nothing: there is no reason to be content.
+/// A latency threshold without any values does not hold.
 Check check(const Threshold& threshold, const GroupResult& result) {
     Check made{.group = result.group.name, .threshold = threshold};
     std::visit(Overloaded{[&](const LatencyLimit& limit) {
@@ -132,7 +132,7 @@ std::string to_table(const LoadResult& result) {
         if (group.tally.cut_off > 0) {
             text += group.group.name + ": " + std::to_string(group.tally.cut_off) + " of " +
                     std::to_string(group.tally.of(Stage::kDue).count()) +
-                    " due moments still waited when their client left; they count with what they had waited\n";
+                    " due moments were still waiting when their client left; each counts with its wait so far\n";
         }
         for (const auto& [reason, count] : group.tally.reasons) {
             text += group.group.name + ": " + std::to_string(count) + " × " + reason + "\n";

@@ -21,7 +21,7 @@ using std::chrono_literals::operator""ms;
 
 constexpr double kNsPerSecond = 1e9;
 
-/// A client needs a socket and some more.
+/// Raises the limit of file descriptors; a client needs a socket and a few more.
 void allow_files(std::uint32_t clients) {
     constexpr rlim_t kPerClient = 4;
     constexpr rlim_t kOthers = 256;
@@ -58,7 +58,7 @@ std::int64_t to_ns(Seconds seconds) {
     return static_cast<std::int64_t>(seconds.count() * kNsPerSecond);
 }
 
-/// Clients of all groups take turns in starting, so that at every moment of the ramp groups are there in proportion.
+/// Interleaves the starts of all groups, so that their shares of the started clients are constant during the ramp.
 std::vector<Driver::Start> starts_of(const Scenario& scenario, Clock::time_point begin) {
     struct Place {
         double share;
@@ -81,7 +81,7 @@ std::vector<Driver::Start> starts_of(const Scenario& scenario, Clock::time_point
     return starts;
 }
 
-/// A scenario while it runs.
+/// A running scenario.
 class Run {
 public:
     Run(const Scenario& scenario, const std::function<void(const LoadProgress&)>& on_progress, std::stop_token stop)
@@ -173,7 +173,7 @@ private:
         return std::move(*fetched);
     }
 
-    /// Until that moment or a stop request, telling how things are once a second.
+    /// Waits until that moment or a stop request and reports progress once a second.
     void wait_until(std::int64_t end_ns, bool is_ramp) {
         std::mutex mutex;
         std::condition_variable_any never;
@@ -238,7 +238,7 @@ private:
 LoadResult run_load(const Scenario& scenario, const std::function<void(const LoadProgress&)>& on_progress,
                     const std::stop_token& stop) {
     allow_files(client_count(scenario));
-    const net::Connection tried(scenario.address, scenario.access); // says what is wrong with the access, once
+    const net::Connection tried(scenario.address, scenario.access); // throws once if the access is not usable
     return Run(scenario, on_progress, stop).result();
 }
 

@@ -8,19 +8,19 @@
 
 namespace fieldcast::client::load {
 
-/// Where a run stands, once a second.
+/// Progress of a run, reported once a second.
 struct LoadProgress {
     struct GroupLine {
         std::string name;
         std::uint32_t clients = 0;
         std::int64_t connected = 0;
-        double fps = 0.0;                 ///< of all clients together, since the line before
-        double megabytes_per_second = 0.0; ///< since the line before
+        double fps = 0.0;                 ///< of all clients together, since the previous report
+        double megabytes_per_second = 0.0; ///< since the previous report
         std::uint64_t frames = 0;
-        double due_p50_ms = 0.0; ///< of the window so far
+        double due_p50_ms = 0.0; ///< over the window so far
         double due_p99_ms = 0.0;
-        std::uint64_t failed = 0; ///< and aborted
-        std::uint64_t lost = 0;   ///< and refused
+        std::uint64_t failed = 0; ///< failed or aborted frames
+        std::uint64_t lost = 0;   ///< lost or refused streams
     };
     bool is_ramp = false;
     double seconds = 0.0; ///< since the ramp began, or since the window began
@@ -28,8 +28,8 @@ struct LoadProgress {
     std::vector<GroupLine> groups;
 };
 
-/// Runs a scenario: ramp, window, everybody leaves. A stop request ends the window early. Throws UserError if nobody
-/// could be reached with that access.
+/// Runs a scenario: ramp, window, then all clients leave. A stop request ends the window early. Throws UserError if the
+/// address or a file of certificates or tokens is not usable.
 LoadResult run_load(const Scenario& scenario, const std::function<void(const LoadProgress&)>& on_progress,
                     const std::stop_token& stop);
 

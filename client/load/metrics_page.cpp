@@ -42,7 +42,7 @@ private:
     int descriptor_;
 };
 
-/// −1 if nobody answers.
+/// A connected socket; −1 if the connection fails.
 int connect_to(const HostPort& address, std::chrono::milliseconds patience) {
     std::string host = address.host;
     std::erase_if(host, [](char c) { return c == '[' || c == ']'; });
@@ -71,7 +71,7 @@ int connect_to(const HostPort& address, std::chrono::milliseconds patience) {
     return connected;
 }
 
-/// Everything until the peer closes; nothing if it takes too long or sends too much.
+/// All bytes until the peer closes; nothing if it takes too long or sends too much.
 std::optional<std::string> read_all(int descriptor, Clock::time_point deadline) {
     std::string text;
     char buffer[16384];
@@ -118,7 +118,7 @@ tl::expected<MetricsUrl, std::string> parse_metrics_url(const std::string& url) 
         return tl::unexpected(std::string("write http://127.0.0.1:PORT/metrics"));
     }
     if (!is_loopback(address->host)) {
-        return tl::unexpected("metrics travel unencrypted, so " + address->host + " would have to be this machine");
+        return tl::unexpected("metrics are not encrypted, so the host must be this machine, not " + address->host);
     }
     return MetricsUrl{*address, slash == std::string::npos ? "/metrics" : rest.substr(slash)};
 }
@@ -146,13 +146,13 @@ tl::expected<Metrics, std::string> fetch_metrics(const MetricsUrl& url, std::chr
     const std::string name = "http://" + to_text(url.address) + url.path;
     const Socket socket(connect_to(url.address, patience));
     if (!socket.is_open()) {
-        return tl::unexpected(name + ": nobody answers");
+        return tl::unexpected(name + ": the connection failed");
     }
     const std::string request =
         "GET " + url.path + " HTTP/1.0\r\nHost: " + to_text(url.address) + "\r\nConnection: close\r\n\r\n";
     if (::send(socket.descriptor(), request.data(), request.size(), MSG_NOSIGNAL) !=
         static_cast<ssize_t>(request.size())) {
-        return tl::unexpected(name + ": cannot be asked");
+        return tl::unexpected(name + ": the request cannot be sent");
     }
     const auto answer = read_all(socket.descriptor(), deadline);
     if (!answer) {

@@ -10,22 +10,23 @@
 
 namespace fieldcast::client::load {
 
-/// Where a server tells about itself.
+/// Address of a server's metrics page.
 struct MetricsUrl {
     HostPort address;
     std::string path; ///< with the leading slash
 };
 
-/// http://127.0.0.1:9464/metrics: plain HTTP, so on loopback only. The error says what is wrong.
+/// Parses "http://127.0.0.1:9464/metrics". Only loopback is allowed, because HTTP is not encrypted. The error names the
+/// problem.
 tl::expected<MetricsUrl, std::string> parse_metrics_url(const std::string& url);
 
-/// Values by name with labels, `fieldcast_frames_sent_total{channel="a"}`.
+/// Values by name with labels, such as `fieldcast_frames_sent_total{channel="a"}`.
 using Metrics = std::map<std::string, double>;
 
-/// The samples of a page in Prometheus' text format; lines that are none are passed over. At most 10,000 values.
+/// The samples of a page in Prometheus' text format, at most 10,000. Lines that are not samples are ignored.
 Metrics parse_metrics(const std::string& page);
 
-/// Fetches the page, at most 4 MiB. The error says what went wrong.
+/// Fetches the page, at most 4 MiB. The error names the problem.
 tl::expected<Metrics, std::string> fetch_metrics(const MetricsUrl& url, std::chrono::milliseconds patience);
 
 } // namespace fieldcast::client::load

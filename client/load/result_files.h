@@ -7,7 +7,7 @@
 
 namespace fieldcast::client::load {
 
-// Files appear complete or not at all. Throw UserError if one cannot be written.
+// Files appear complete or not at all. The functions throw UserError if a file cannot be written.
 
 void write_json(const LoadResult& result, const std::filesystem::path& file);
 void write_html(const LoadResult& result, const std::filesystem::path& file);

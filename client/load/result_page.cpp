@@ -14,7 +14,7 @@ using report::fixed;
 using report::Markup;
 
 constexpr std::size_t kSeries = 8;      // colours of the style sheet
-constexpr std::size_t kMostPoints = 300; // of a curve over time
+constexpr std::size_t kMostPoints = 300; // most points of a curve over time
 constexpr double kMostNines = 4.0;       // percentile curves end at 99.99 %
 
 double milliseconds(std::int64_t us) {
@@ -31,7 +31,7 @@ std::string lead(const LoadResult& result) {
         frames += group.tally.frames;
     }
     const auto missed = std::ranges::count_if(result.checks, [](const Check& check) { return !check.holds; });
-    std::string text = report::joined({std::to_string(client_count(result.scenario)), " clients got ",
+    std::string text = report::joined({std::to_string(client_count(result.scenario)), " clients received ",
                                        std::to_string(frames), " frames in ", fixed(result.seconds, 1), " seconds",
                                        result.was_interrupted ? " (interrupted)." : "."});
     if (result.checks.empty()) {
@@ -69,7 +69,7 @@ Markup check_table(const LoadResult& result) {
     return report::table(table);
 }
 
-/// A value per second becomes a curve of at most `kMostPoints`: means, or largest values, of neighbouring seconds.
+/// Reduces one value per second to at most `kMostPoints`: means or maxima of neighbouring seconds.
 enum class Join : std::uint8_t { kMean, kPeak };
 template <class Value>
 report::Curve over_time(const LoadResult& result, std::size_t index, Join join, Value value) {
@@ -77,7 +77,7 @@ report::Curve over_time(const LoadResult& result, std::size_t index, Join join, 
     report::Curve curve{.label = group.group.name, .points = {}, .series = index % kSeries};
     const std::vector<Second>& seconds = group.tally.seconds;
     const auto length = static_cast<std::size_t>(result.seconds);
-    const std::size_t whole = std::min(seconds.size(), length); // the last one may be a part
+    const std::size_t whole = std::min(seconds.size(), length); // the last second may be incomplete
     const std::size_t step = std::max<std::size_t>(1, (whole + kMostPoints - 1) / kMostPoints);
     for (std::size_t i = 0; i + step <= whole; i += step) {
         double sum = 0.0;
@@ -111,7 +111,7 @@ Markup time_charts(const LoadResult& result) {
     return report::side_by_side({curve_chart(frames), curve_chart(bytes), curve_chart(due)});
 }
 
-/// Percentiles over their number of nines, as is usual: the tail gets room.
+/// Percentiles over their number of nines, which stretches the tail.
 Markup percentile_chart(const LoadResult& result, Stage stage) {
     const StageText& text = kStages[static_cast<std::size_t>(stage)];
     report::CurveChart chart{.title = std::string(text.name),
@@ -149,7 +149,7 @@ Markup stage_table(const GroupResult& group) {
     return report::table(table);
 }
 
-/// Frame rates of the clients in order, as bars: a starved one is a short bar at the end.
+/// Frame rates of the clients as sorted bars; a starved client is a short bar at the end.
 Markup fairness_chart(const GroupResult& group) {
     constexpr std::size_t kMostBars = 24;
     std::vector<double> rates = group.client_fps;
@@ -173,7 +173,7 @@ Markup metrics_table(const LoadResult& result) {
     for (const auto& [name, after] : result.metrics_after) {
         const auto before = result.metrics_before.find(name);
         const bool is_known = before != result.metrics_before.end();
-        if (!is_known || before->second != after) { // what stood still tells nothing about the load
+        if (!is_known || before->second != after) { // unchanged values are left out
             table.rows.push_back({name, is_known ? fixed(before->second, 3) : "–", fixed(after, 3),
                                   is_known ? fixed(after - before->second, 3) : "–"});
         }

@@ -21,7 +21,7 @@ Problem read_seconds(const std::string& text, Seconds& result) {
     return problem;
 }
 
-/// Takes the text as it is.
+/// A setter that stores the text unchanged.
 template <class Owner> auto text_in(std::string Owner::*member) {
     return [member](const std::string& text, Owner& owner) {
         owner.*member = text;
@@ -29,7 +29,7 @@ template <class Owner> auto text_in(std::string Owner::*member) {
     };
 }
 
-/// Takes the text as a file's name.
+/// A setter that stores the text as the name of a file.
 auto file_in(std::filesystem::path net::Access::*member) {
     return [member](const std::string& text, Scenario& scenario) {
         scenario.access.*member = text;
@@ -37,7 +37,7 @@ auto file_in(std::filesystem::path net::Access::*member) {
     };
 }
 
-/// `own`, and everything that a client can ask for.
+/// `own` and the setters of a client's request.
 Setters<Group> with_request(Setters<Group> own) {
     for (const auto& [name, setter] : net::request_setters()) {
         own.emplace(name, [set = setter](const std::string& text, Group& group) { return set(text, group.request); });

@@ -10,7 +10,7 @@
 namespace fieldcast::client::load {
 namespace {
 
-/// Goes through the tables of a scenario file and collects problems with their places.
+/// Reads the tables of a scenario file and collects problems with file, line and key.
 class Reader {
 public:
     Reader(std::string file, std::vector<std::string> problems)
@@ -28,7 +28,7 @@ public:
             } else if (table.name == "group") {
                 read_group(table, scenario);
             } else {
-                add(table.line, table.name, "no such table; there are [target], [[group]] and [thresholds]");
+                add(table.line, table.name, "unknown table; expected [target], [[group]] or [thresholds]");
             }
         }
     }
@@ -54,7 +54,7 @@ private:
             if (child.name == "thresholds") {
                 read_thresholds(child, group.thresholds);
             } else {
-                add(child.line, child.name, "no such table; a group may have thresholds = { … }");
+                add(child.line, child.name, "unknown table; a group may only have thresholds = { … }");
             }
         }
         scenario.groups.push_back(std::move(group));
@@ -67,7 +67,7 @@ private:
 
     void has_no_tables(const TomlTable& table) {
         for (const TomlTable& child : table.children) {
-            add(child.line, child.name, "no table belongs here");
+            add(child.line, child.name, "tables are not allowed here");
         }
     }
 
@@ -82,7 +82,7 @@ private:
 void check_target(const Scenario& scenario, std::vector<std::string>& problems) {
     const net::Access& access = scenario.access;
     if (access.tls_certificate.empty() != access.tls_key.empty()) {
-        problems.emplace_back("tls-cert and tls-key belong together");
+        problems.emplace_back("tls-cert and tls-key must be given together");
     }
     const bool has_tls = !access.tls_ca.empty() || !access.tls_key.empty() || !access.tls_name.empty();
     if (has_tls && !access.uses_tls) {
@@ -101,7 +101,7 @@ std::vector<std::string> problems_of(const Scenario& scenario) {
     std::vector<std::string> problems;
     check_target(scenario, problems);
     if (scenario.groups.empty()) {
-        problems.emplace_back("no [[group]] of clients");
+        problems.emplace_back("at least one [[group]] is required");
     }
     if (client_count(scenario) > kMaxClients) {
         problems.push_back("more than " + std::to_string(kMaxClients) + " clients");
@@ -109,7 +109,7 @@ std::vector<std::string> problems_of(const Scenario& scenario) {
     std::set<std::string> names;
     for (const Group& group : scenario.groups) {
         if (group.name.empty() || !names.insert(group.name).second) {
-            problems.push_back("group name '" + group.name + "': empty, or there are two of it");
+            problems.push_back("group name '" + group.name + "': empty or used twice");
         }
     }
     return problems;

@@ -9,16 +9,16 @@
 
 namespace fieldcast::client::load {
 
-/// What is timed. Names are those of scenario files, results and documentation.
+/// Measured durations. Their names are the same in scenario files, results and documentation.
 enum class Stage : std::uint8_t {
-    kDue,        ///< due moment → decoded: what a viewer waits for, see DueSchedule
+    kDue,        ///< due moment → decoded: the latency of a viewer, see DueSchedule
     kPose,       ///< pose sampled → decoded
-    kRender,     ///< on the server
-    kEncode,     ///< on the server
+    kRender,     ///< rendering on the server
+    kEncode,     ///< encoding on the server
     kQueue,      ///< encoded → header chunk handed to the transport
     kSend,       ///< header chunk handed to the transport → trailer received
     kTransfer,   ///< header chunk received → trailer received
-    kDecode,     ///< trailer received → frame checked or decoded; includes waiting for a thread of ours
+    kDecode,     ///< trailer received → frame checked or decoded; includes the wait for a decoder thread
     kInterval,   ///< one frame → the next
     kConnect,    ///< dialling → Configured
     kFirstFrame, ///< dialling → first frame
@@ -32,10 +32,10 @@ struct StageText {
 inline constexpr std::array<StageText, kStageCount> kStages{{
     {"due", "due moment to decoded"},
     {"pose", "pose sampled to decoded"},
-    {"render", "on the server"},
-    {"encode", "on the server"},
-    {"queue", "encoded to sending begun"},
-    {"send", "sending begun to last byte"},
+    {"render", "rendering on the server"},
+    {"encode", "encoding on the server"},
+    {"queue", "encoded to start of sending"},
+    {"send", "start of sending to last byte"},
     {"transfer", "first byte to last byte"},
     {"decode", "last byte to decoded"},
     {"interval", "one frame to the next"},

@@ -17,7 +17,7 @@ Second& Tally::second_of(const Window& window, std::int64_t time_ns) {
 }
 
 void Tally::add_reason(const std::string& said) {
-    const std::string reason = printable(said); // servers have their say in it
+    const std::string reason = printable(said); // it may contain text from the server
     const auto known = reasons.find(reason);
     if (known != reasons.end()) {
         ++known->second;

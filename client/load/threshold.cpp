@@ -21,7 +21,7 @@ constexpr std::array<std::pair<std::string_view, Quantity>, 7> kQuantities{{
     {"most_without_frames", Quantity::kMostWithout},
 }};
 
-/// "first_frame_p99_ms" is first_frame and p99.
+/// Splits "first_frame_p99_ms" into first_frame and p99.
 std::optional<LatencyLimit> latency_of(std::string_view name) {
     constexpr std::string_view kUnit = "_ms";
     if (!name.ends_with(kUnit)) {

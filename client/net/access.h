@@ -6,22 +6,21 @@
 
 namespace fieldcast::client::net {
 
-/// How to reach a server that not everybody may use. Files are read for each new connection, so that renewed ones are
-/// taken up.
+/// TLS and token for connections to a server. The files are read for each new connection, so renewed files take effect.
 struct Access {
     bool uses_tls = false;
-    std::filesystem::path tls_ca{};          ///< PEM: who may have signed the server's certificate; empty: the system's
-    std::filesystem::path tls_certificate{}; ///< PEM: ours, for servers that ask for one; together with `tls_key`
-    std::filesystem::path tls_key{};
-    std::string tls_name{};             ///< the server's name in its certificate; empty: the host that is dialled
+    std::filesystem::path tls_ca{};          ///< PEM: authorities for the server's certificate; empty: the system's
+    std::filesystem::path tls_certificate{}; ///< PEM: ours, for servers that require one; with `tls_key`
+    std::filesystem::path tls_key{};         ///< PEM: private key of `tls_certificate`
+    std::string tls_name{};             ///< the server's name in its certificate; empty: the host of the address
     std::filesystem::path token_file{}; ///< first line that is neither empty nor a comment (#)
-    std::string token{};                ///< without `token_file`; empty: none
+    std::string token{};                ///< used if `token_file` is empty; empty: no token
 };
 
-/// The token of `access`; empty: none. Throws UserError, which never shows it.
+/// The token of `access`; empty: none. Throws UserError, whose message never contains the token.
 std::string read_token(const Access& access);
 
-/// All of a PEM file. Throws UserError.
+/// The content of a PEM file. Throws UserError.
 std::string read_pem(const std::filesystem::path& file);
 
 /// Takes "https://" or "grpcs://" off `address` and turns TLS on; takes "http://" and "grpc://" off. Throws UserError

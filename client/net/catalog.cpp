@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/catalog.h"
+
+#include "client/net/call_status.h"
 #include "client/net/connection_state.h"
 
 #include "fieldcast/v1/catalog.grpc.pb.h"
@@ -11,14 +13,14 @@ namespace fieldcast::client::net {
 namespace {
 
 constexpr std::chrono::seconds kUnaryDeadline{5};
-constexpr std::chrono::minutes kFetchDeadline{30}; // a slow line may resume where it was cut
+constexpr std::chrono::minutes kFetchDeadline{30}; // clients on slow connections resume interrupted transfers
 constexpr std::size_t kMaxChannels = 256;
 constexpr std::size_t kMaxNameBytes = 64;
 
 ChannelInfo channel_info(const v1::Channel& message) {
     ChannelInfo info;
     if (message.name().size() > kMaxNameBytes || message.scene_hash().size() != info.scene_hash.size()) {
-        throw NetError("ListChannels: a channel has a name over 64 bytes or no scene hash of 32 bytes", false);
+        throw NetError("ListChannels: a channel has a name over 64 bytes, or a scene hash that is not 32 bytes", false);
     }
     info.name = message.name();
     std::copy(message.scene_hash().begin(), message.scene_hash().end(), info.scene_hash.begin());
@@ -29,20 +31,20 @@ ChannelInfo channel_info(const v1::Channel& message) {
     return info;
 }
 
-/// Where the next piece of a bundle must begin, and how long the bundle is.
+/// Checks that the pieces of a bundle are in order and agree on its size.
 class PieceCheck {
 public:
     explicit PieceCheck(std::uint64_t offset) : next_offset_(offset) {}
 
     BundlePiece check(const v1::SceneChunk& chunk) {
         if (!is_first_ && chunk.total_bytes() != total_bytes_) {
-            throw NetError("FetchScene: the size of the bundle changed on the way", false);
+            throw NetError("FetchScene: the size of the bundle changed during the transfer", false);
         }
         is_first_ = false;
         total_bytes_ = chunk.total_bytes();
         if (chunk.offset() != next_offset_ ||
             chunk.data().size() > total_bytes_ - std::min(total_bytes_, next_offset_)) {
-            throw NetError("FetchScene: a piece is out of order or beyond the end", false);
+            throw NetError("FetchScene: a piece is out of order, or beyond the end of the bundle", false);
         }
         next_offset_ += chunk.data().size();
         return {total_bytes_, std::as_bytes(std::span(chunk.data()))};

@@ -14,7 +14,7 @@
 
 namespace fieldcast::client::net {
 
-/// What a server says about one channel.
+/// A channel, as the server describes it.
 struct ChannelInfo {
     std::string name;
     scene::SceneHash scene_hash{};
@@ -24,17 +24,17 @@ struct ChannelInfo {
     float frames_per_second = 0.0F;
 };
 
-/// Channels in the server's order, at least one. Waits at most 5 s. Throws NetError.
+/// The server's channels in its order, at least one. Waits at most 5 s. Throws NetError.
 std::vector<ChannelInfo> list_channels(const Connection& connection);
 
-/// One piece of a scene bundle of `total_bytes`; pieces follow each other without gaps.
+/// One piece of a scene bundle of `total_bytes`. Pieces come in order and without gaps.
 struct BundlePiece {
     std::uint64_t total_bytes = 0;
     std::span<const std::byte> bytes;
 };
 
-/// Fetches the bundle of `hash` from `offset` on and hands every piece to `take`, which may throw to end the transfer.
-/// Returns when the bundle is complete. Throws NetError; a stop request ends it with a transient one.
+/// Fetches the bundle of `hash` from byte `offset` on and passes each piece to `take`, which may throw to end the
+/// transfer. Returns when the bundle is complete. Throws NetError, after a stop request a transient one.
 void fetch_scene(const Connection& connection, const scene::SceneHash& hash, std::uint64_t offset,
                  const std::function<void(const BundlePiece&)>& take, const std::stop_token& stop);
 

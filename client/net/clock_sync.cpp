@@ -7,7 +7,7 @@
 namespace fieldcast::client::net {
 namespace {
 
-// Clocks count from boot: values beyond 200 years are lies, and keeping them out keeps sums from overflowing.
+// Steady clocks count from boot, so times beyond 73 years are wrong. Rejecting them keeps sums from overflowing.
 constexpr std::int64_t kLatestNs = INT64_MAX / 4;
 
 bool is_plausible(std::int64_t time_ns) {

@@ -7,13 +7,14 @@
 
 namespace fieldcast::client::net {
 
-/// Nanoseconds on this process' steady clock.
+/// The time on our steady clock, in nanoseconds.
 std::int64_t steady_now_ns();
 
-/// Offset between the server's and our steady clock. Of the last `kWindow` exchanges the one with the shortest round
-/// trip counts: it was delayed least, so its error is the smallest (at most half its round trip).
+/// Estimates the offset between the server's and our steady clock. Of the last `kWindow` exchanges, it uses the one
+/// with the shortest round trip, because the error is at most half the round trip.
 class ClockSync {
 public:
+    /// The times of one TimeSync message and its answer, each on the clock of its side.
     struct Exchange {
         std::int64_t client_send_ns = 0;
         std::int64_t server_receive_ns = 0;
@@ -21,19 +22,19 @@ public:
         std::int64_t client_receive_ns = 0;
     };
 
-    /// Ignores exchanges that cannot be true (negative round trip).
+    /// Ignores impossible exchanges: with a negative round trip, or with times out of range.
     void add(const Exchange& exchange);
 
-    /// A moment of the server's clock on ours. Empty before the first exchange, and for 0, which means "unknown".
+    /// Converts a time on the server's clock to ours. Empty before the first exchange, and for 0 ("unknown").
     std::optional<std::int64_t> client_from_server_ns(std::int64_t server_ns) const;
     std::optional<std::int64_t> round_trip_ns() const; ///< the shortest of the window
 
-    /// What the exchange with that round trip says.
+    /// The estimated offset, and the round trip of the exchange that it is from.
     struct Offset {
         std::int64_t server_minus_client_ns = 0;
         std::int64_t round_trip_ns = 0;
     };
-    std::optional<Offset> offset() const;
+    std::optional<Offset> offset() const; ///< empty before the first exchange
 
     static constexpr std::size_t kWindow = 16;
 

@@ -12,11 +12,11 @@
 namespace fieldcast::client::net {
 namespace {
 
-// What one client holds at most, whatever a server claims.
+// Limits of a client, whatever a server announces.
 constexpr std::uint32_t kMaxViewSide = 8192;
 constexpr std::uint64_t kMaxFrameBytes = 1ULL << 30;
 
-/// What a client of that request makes its views from, in the order of the frames.
+/// The planes of frames that answer `request`, in the order of the frames.
 std::vector<PlaneSemantic> planes_of(const Request& request) {
     constexpr std::array kResidual{WarpPlane::kResidual};
     const std::span<const WarpPlane> extra(kResidual);
@@ -37,7 +37,7 @@ void add_formats(v1::Configure& message, PlaneSemantic semantic) {
     v1::CodecPreference& preference = *message.add_codecs();
     preference.set_semantic(wire::to_proto(semantic));
     preference.add_formats(wire::to_proto(*row.coarse_format));
-    preference.add_formats(wire::to_proto(row.format)); // of servers or recordings that do not have the other
+    preference.add_formats(wire::to_proto(row.format)); // for servers and recordings without the coarse format
 }
 
 void add_planes(v1::Configure& message, const Request& request) {
@@ -49,14 +49,14 @@ void add_planes(v1::Configure& message, const Request& request) {
         }
     }
     if (request.mode == DeliveryMode::kWarp && request.has_residual) {
-        message.add_warp_planes(v1::WARP_PLANE_RESIDUAL);
+        message.add_warp_planes(static_cast<v1::WarpPlane>(WarpPlane::kResidual));
     }
 }
 
 void add_adaptation(v1::Configure& message, const AdaptationBounds& allowed) {
     v1::Adaptation& bounds = *message.mutable_adaptation();
     if (allowed.allows_jpeg) {
-        bounds.add_codecs(v1::CODEC_JPEG);
+        bounds.add_codecs(wire::to_proto(Codec::kJpeg));
     }
     bounds.set_min_quality(allowed.min_quality);
     bounds.set_min_frames_per_second(allowed.min_frames_per_second);
@@ -64,20 +64,21 @@ void add_adaptation(v1::Configure& message, const AdaptationBounds& allowed) {
     bounds.set_min_rows(allowed.min_rows);
     bounds.set_min_cols(allowed.min_cols);
     if (allowed.allows_scene) {
-        bounds.add_modes(v1::DELIVERY_MODE_SCENE);
+        bounds.add_modes(wire::to_proto(DeliveryMode::kScene));
     }
     bounds.set_max_queue_delay_ms(allowed.max_queue_delay_ms);
 }
 
-/// `request` as it is when everything that a server may change by itself is what it chose, within the bounds. Then a
-/// Configured that has adapted is checked like an answer.
+/// `request` with the server's choice in everything that it may change by itself, within the bounds. An adapted
+/// Configured is then checked like an answer to that request.
 Request adapted_request(const v1::Configured& message, const Request& request) {
     const AdaptationBounds& bounds = *request.adaptation;
     Request adapted = request;
     if (bounds.allows_jpeg) {
         adapted.codecs.push_back(Codec::kJpeg);
     }
-    if (bounds.allows_scene && message.mode() == v1::DELIVERY_MODE_SCENE && request.mode == DeliveryMode::kViews) {
+    const bool is_scene = message.mode() == wire::to_proto(DeliveryMode::kScene);
+    if (bounds.allows_scene && is_scene && request.mode == DeliveryMode::kViews) {
         adapted.mode = DeliveryMode::kScene;
         adapted.planes = PlaneSet::kIllumination;
         return adapted;
@@ -103,7 +104,7 @@ Adapted from_proto(const v1::Adapted& message) {
             .change = message.change()};
 }
 
-/// Why a server may not send planes in the codecs that it chose, or nothing.
+/// Why the server must not use the codecs that it has chosen, or nothing.
 std::optional<std::string> codec_problem(const v1::Configured& message, const Request& request) {
     for (const v1::PlaneHeader& plane : message.planes()) {
         const auto codec = wire::from_proto(plane.codec());
@@ -143,7 +144,7 @@ std::optional<PlaneBound> plane_bound(const v1::PlaneHeader& plane) {
     return PlaneBound{*semantic, *format, plane.width_px(), plane.height_px()};
 }
 
-/// Of a source frame; none of views.
+/// The planes that source frames have; empty for modes in which the server makes the views.
 Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, DeliveryMode mode) {
     std::vector<PlaneBound> bounds;
     if (!is_made_by_client(mode)) {
@@ -152,15 +153,16 @@ Decoded<std::vector<PlaneBound>> plane_bounds(const v1::Configured& message, Del
     for (const v1::PlaneHeader& plane : message.planes()) {
         const std::optional<PlaneBound> bound = plane_bound(plane);
         if (!bound) {
-            return decode_error("Configured: a plane of unknown meaning or format, or a size outside 1 … 16384");
+            return decode_error("Configured: a plane has an unknown semantic or format, or a size outside 1 … 16384");
         }
         bounds.push_back(*bound);
     }
     return bounds;
 }
 
-/// Sizes in Configured are upper bounds; the assembler checks frames against what follows from them.
-Decoded<wire::FrameLimits> frame_limits(const std::vector<PlaneBound>& planes, const wire::ViewSet& set, DeliveryMode mode) {
+/// The limits that follow from the sizes in Configured, which are upper bounds.
+Decoded<wire::FrameLimits> frame_limits(const std::vector<PlaneBound>& planes, const wire::ViewSet& set,
+                                        DeliveryMode mode) {
     wire::FrameLimits limits;
     limits.max_width_px = set.width_px;
     limits.max_height_px = set.height_px;
@@ -196,13 +198,14 @@ std::optional<std::string> source_problem(const SourceFrame& frame, const wire::
         return std::ranges::all_of(planes, [&](PlaneSemantic semantic) { return frame.find(semantic) != nullptr; });
     };
     const ModeRow row = row_of(mode);
-    const bool has_light = has_all(row_of(PlaneSet::kTotalLight).planes) || has_all(row_of(PlaneSet::kIllumination).planes);
+    const bool has_light =
+        std::ranges::any_of(kAll<PlaneSet>, [&](PlaneSet planes) { return has_all(row_of(planes).planes); });
     if (!has_all(row.planes) || (row.needs_scene && !has_light)) {
-        return "frame without the planes that views are made from";
+        return "frame without the planes from which views are made";
     }
     const Camera& source = frame.header.source;
     if (set.height_px > source.height_px || set.width_px > source.width_px) {
-        return "source smaller than the views";
+        return "frame whose source is smaller than the views";
     }
     return std::nullopt;
 }
@@ -247,7 +250,7 @@ v1::Configure to_configure(const Request& request, std::uint32_t request_id) {
 
 Decoded<Agreement> from_configured(const v1::Configured& message, const Request& asked) {
     if (message.has_adapted() && !asked.adaptation) {
-        return decode_error("Configured: adapted, which was not asked for");
+        return decode_error("Configured: adapted, although the request does not allow it");
     }
     const Request request = message.has_adapted() ? adapted_request(message, asked) : asked;
     Agreement agreement;

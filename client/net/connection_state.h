@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "client/net/connection.h"
-
 #include <grpcpp/grpcpp.h>
+#include <memory>
+#include <string>
 
 namespace fieldcast::client::net {
 
-struct Connection::State {
+/// What a Connection consists of, for the calls of client/net.
+struct ConnectionState {
     std::shared_ptr<grpc::Channel> channel;
     std::string token; ///< empty: none
 
-    /// Call it for every call before it starts.
-    void prepare(grpc::ClientContext& context) const;
+    /// Adds the token. Call it for every call before the call starts.
+    void prepare(grpc::ClientContext& context) const {
+        if (!token.empty()) {
+            context.AddMetadata("authorization", "Bearer " + token);
+        }
+    }
 };
-
-/// The one place where gRPC's status becomes ours. `what` names the call for people.
-NetError to_error(const std::string& what, const grpc::Status& status);
 
 } // namespace fieldcast::client::net

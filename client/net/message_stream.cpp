@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/net/message_stream.h"
+
+#include "client/net/call_status.h"
 #include "client/net/clock_sync.h"
 #include "client/net/connection_state.h"
-
 #include "core/base/guarded.h"
 
 #include "fieldcast/v1/light_field.grpc.pb.h"
@@ -14,9 +15,9 @@
 
 namespace fieldcast::client::net {
 
-// gRPC calls the reactions on its own threads; they only move messages and start the next operation. Operations that
-// start elsewhere (`send`, `resume_reading`) take a hold for their duration, so that the call outlives them; `is_open`
-// under the lock says that the main hold, taken before the call began, is still there.
+// gRPC calls the reactions on its own threads. They only move messages and start the next operation. Operations that
+// start elsewhere (in `send`, `half_close` and `next`) take a hold for their duration, so that the call outlives them.
+// `is_open`, under the lock, says that the main hold, taken before the call began, is still there.
 class MessageStream::Reactor final : public grpc::ClientBidiReactor<v1::ClientMessage, v1::ServerMessage> {
 public:
     Reactor(const Connection& connection, ReadingOptions options)
@@ -55,14 +56,14 @@ private:
         bool is_half_closed = false;
         bool is_open = true; ///< operations may start
         bool is_overrun = false;
-        std::optional<grpc::Status> status; ///< the stream is over
+        std::optional<grpc::Status> status; ///< set: the stream has ended
     };
     enum class NextOperation { kNone, kWrite, kHalfClose };
 
     NextOperation choose_operation(State& state);
     void start(NextOperation operation);
     void release_main_hold();
-    void tell() const;
+    void notify() const;
 
     ReadingOptions options_;
     grpc::ClientContext context_;
@@ -73,7 +74,7 @@ private:
     Guarded<State> state_;
 };
 
-/// Decides, under the lock, what goes out next; `start` does it without the lock.
+/// Chooses the next operation, under the lock. `start` then starts it without the lock.
 MessageStream::Reactor::NextOperation MessageStream::Reactor::choose_operation(State& state) {
     if (!state.is_open || state.is_writing || state.is_half_closed) {
         return NextOperation::kNone;
@@ -174,7 +175,7 @@ std::optional<NetError> MessageStream::Reactor::end() {
         return std::nullopt;
     }
     if (state->is_overrun) {
-        return NetError("stream: the server does not read what it is sent", true);
+        return NetError("stream: the server does not read our messages", true);
     }
     return state->status->ok() ? NetError("", true) : to_error("stream", *state->status);
 }
@@ -193,7 +194,7 @@ void MessageStream::Reactor::OnReadDone(bool ok) {
         state->is_reading = continues;
         reading_.Clear();
         changed_.notify_all();
-        tell();
+        notify();
     }
     if (continues) {
         StartRead(&reading_);
@@ -215,10 +216,10 @@ void MessageStream::Reactor::OnDone(const grpc::Status& status) {
     state->is_open = false;
     state->status = status;
     changed_.notify_all(); // under the lock: the destructor may be waiting, and destroys `changed_`
-    tell();
+    notify();
 }
 
-void MessageStream::Reactor::tell() const {
+void MessageStream::Reactor::notify() const {
     if (options_.on_change) {
         options_.on_change();
     }

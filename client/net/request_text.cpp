@@ -45,7 +45,7 @@ SettingProblem read_codecs(Text text, std::vector<Codec>& codecs) {
     for (const std::string& word : split(text, '+')) {
         const auto codec = from_word<Codec>(word);
         if (!codec) {
-            return "write " + alternatives<Codec>() + "; several with +, most wanted first";
+            return "write " + alternatives<Codec>() + "; several with +, the preferred one first";
         }
         codecs.push_back(*codec);
     }

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = SteeringNews::Kind;
 
-constexpr std::uint32_t kShortestLease_ms = 100; // a server that says less would be asked all the time
+constexpr std::uint32_t kShortestLease_ms = 100; // with less, the client would have to send all the time
 
 std::string reason_text(v1::SteeringReleaseReason reason) {
     switch (reason) {
@@ -19,8 +19,8 @@ std::string reason_text(v1::SteeringReleaseReason reason) {
     case v1::STEERING_RELEASE_REASON_TAKEN:
         return "an operator has taken the camera";
     case v1::STEERING_RELEASE_REASON_EXPIRED:
-        return "no sign of life for too long";
-    default: // also numbers newer than this program
+        return "inactive for too long";
+    default: // also values that are newer than this program
         return "released";
     }
 }
@@ -47,7 +47,7 @@ v1::ClientMessage to_pose(const WantedPose& pose, std::uint64_t sequence, std::i
     return message;
 }
 
-v1::ClientMessage sign_of_life() {
+v1::ClientMessage keep_alive() {
     v1::ClientMessage message;
     message.mutable_steer_camera();
     return message;

@@ -8,16 +8,16 @@
 
 namespace fieldcast::client::play {
 
-/// When to try again after a transient failure, and when to give up.
+/// Decides when to try again after a transient failure, and when to give up.
 class Attempts {
 public:
-    /// Without `reconnects` there is one attempt. Gives up when nothing has worked for `patience`.
+    /// Without `reconnects`, there is only one attempt. Gives up `patience` after the last success.
     Attempts(bool reconnects, std::chrono::milliseconds patience);
 
-    /// Something worked: patience and waiting times start anew.
+    /// Call it after a success: patience and delays start again.
     void succeeded();
 
-    /// Waits before the next attempt. False if there is to be none, or on a stop request.
+    /// Waits before the next attempt. False if there must be none, or on a stop request.
     bool wait_for_next(const std::stop_token& stop, net::Obstacle obstacle);
 
 private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kEntryName = "entry.json";
 
-/// `text` as a file below `folder`, or nothing if it is absolute or climbs out.
+/// The file `text` below `folder`, or nothing if the path is absolute or leaves the folder.
 std::optional<std::filesystem::path> inside(const std::filesystem::path& folder, const std::string& text) {
     const std::filesystem::path path(text);
     const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();

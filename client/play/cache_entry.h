@@ -8,11 +8,11 @@
 
 namespace fieldcast::client::play {
 
-/// Remembers, inside the folder of an unpacked scene, which file to load and with which options: `entry.json`.
-/// Written last, so its presence says that the folder is complete. Throws std::system_error.
+/// Writes `entry.json` into the folder of an unpacked scene: the file to load, and its options. Call it last, because
+/// `entry.json` marks the folder as complete. Throws std::system_error.
 void write_cache_entry(const std::filesystem::path& folder, const scene::UnpackedBundle& unpacked);
 
-/// Nothing if the folder holds no entry, or one that is malformed or points outside the folder.
+/// Reads `entry.json`. Nothing if it is missing or malformed, or if it names files outside the folder.
 std::optional<scene::UnpackedBundle> read_cache_entry(const std::filesystem::path& folder);
 
 } // namespace fieldcast::client::play

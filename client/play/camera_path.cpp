@@ -2,6 +2,7 @@
 #include "client/play/camera_path.h"
 
 #include "client/play/live_poses.h"
+#include "client/play/pose_text.h"
 #include "core/base/error.h"
 
 #include <algorithm>
@@ -23,56 +24,7 @@ struct TimedPose {
     net::WantedPose pose;
 };
 
-template <std::size_t kCount>
-std::array<float, kCount> numbers_of(const nlohmann::json& json, const std::string& place) {
-    std::array<float, kCount> numbers{};
-    if (!json.is_array() || json.size() != kCount) {
-        throw UserError(place + ": write " + std::to_string(kCount) + " numbers");
-    }
-    for (std::size_t i = 0; i < kCount; ++i) {
-        if (!json[i].is_number() || !std::isfinite(json[i].get<float>())) {
-            throw UserError(place + ": write " + std::to_string(kCount) + " finite numbers");
-        }
-        numbers[i] = json[i].get<float>();
-    }
-    return numbers;
-}
-
-glm::mat4 looking(const glm::vec3& position, const glm::vec3& target, const std::string& place) {
-    const glm::vec3 backwards = position - target;
-    const glm::vec3 right = glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), backwards);
-    if (!(glm::length(right) > 0.0F)) {
-        throw UserError(place + ": the camera looks straight up, down or nowhere; give world_from_camera instead");
-    }
-    const glm::vec3 z = glm::normalize(backwards);
-    const glm::vec3 x = glm::normalize(right);
-    return {glm::vec4(x, 0.0F), glm::vec4(glm::cross(z, x), 0.0F), glm::vec4(z, 0.0F), glm::vec4(position, 1.0F)};
-}
-
-net::WantedPose pose_of(const nlohmann::json& json, const std::string& place) {
-    if (!json.is_object()) {
-        throw UserError(place + R"(: write an object, as in {"position": [0, 1, 3], "look_at": [0, 1, 0]})");
-    }
-    net::WantedPose pose;
-    pose.cut = json.value("cut", nlohmann::json(false)) == true;
-    if (json.contains("world_from_camera")) {
-        const auto values = numbers_of<12>(json["world_from_camera"], place + ": world_from_camera");
-        for (int i = 0; i < 12; ++i) {
-            pose.world_from_camera[i / 3][i % 3] = values[static_cast<std::size_t>(i)];
-        }
-        return pose;
-    }
-    if (!json.contains("position") || !json.contains("look_at")) {
-        throw UserError(place + ": needs position and look_at, or world_from_camera");
-    }
-    const auto position = numbers_of<3>(json["position"], place + ": position");
-    const auto target = numbers_of<3>(json["look_at"], place + ": look_at");
-    pose.world_from_camera =
-        looking({position[0], position[1], position[2]}, {target[0], target[1], target[2]}, place);
-    return pose;
-}
-
-/// "radius=2,seconds=10": every name once at most.
+/// The number of `name` in a list such as "radius=2,seconds=10"; `otherwise` if it is missing, 0 if it is malformed.
 double number_named(const std::string& text, const std::string& name, double otherwise) {
     std::istringstream parts(text);
     for (std::string part; std::getline(parts, part, ',');) {
@@ -108,13 +60,13 @@ glm::mat4 between(const glm::mat4& a, const glm::mat4& b, float share) {
     return pose;
 }
 
-/// Pose number `next - 1` is the last one at or before `now_s`.
+/// The pose at `now_s`. Pose `next` is the first one after `now_s`.
 net::WantedPose pose_at(const std::vector<TimedPose>& poses, std::size_t next, double now_s) {
     if (next == 0) {
         return poses.front().pose;
     }
     const TimedPose& before = poses[next - 1];
-    if (next == poses.size() || poses[next].pose.cut) { // a jump has no way to it
+    if (next == poses.size() || poses[next].pose.cut) { // jumps are not interpolated
         return before.pose;
     }
     const TimedPose& after = poses[next];
@@ -131,11 +83,11 @@ std::vector<TimedPose> read_timed_poses(const std::filesystem::path& file) {
     std::vector<TimedPose> poses;
     for (const nlohmann::json& entry : json) {
         const std::string place = "--steer " + file.string() + ": pose " + std::to_string(poses.size());
-        const net::WantedPose pose = pose_of(entry, place);
+        const net::WantedPose pose = read_pose(entry, place);
         const double time_s =
             entry.contains("time_s") && entry["time_s"].is_number() ? entry["time_s"].get<double>() : -1.0;
         if (!(time_s >= 0.0) || (!poses.empty() && !(time_s > poses.back().time_s))) {
-            throw UserError(place + ": needs time_s, 0 or more and later than the pose before");
+            throw UserError(place + ": needs time_s, which must be 0 or more and later than that of the previous pose");
         }
         poses.push_back({time_s, pose});
     }
@@ -151,16 +103,12 @@ glm::mat4 orbit_pose(const glm::mat4& start, float radius_m, double share) {
     return glm::translate(round, -centre) * start;
 }
 
-net::WantedPose parse_pose(std::string_view text, const std::string& place) {
-    return pose_of(nlohmann::json::parse(text, nullptr, false), place);
-}
-
 PoseSource read_path_file(const std::filesystem::path& file) {
     return [poses = read_timed_poses(file), jumped = std::size_t{0}](double now_s, const glm::mat4&) mutable {
         const auto later = std::ranges::upper_bound(poses, now_s, {}, &TimedPose::time_s);
         const auto next = static_cast<std::size_t>(later - poses.begin());
         net::WantedPose pose = pose_at(poses, next, now_s);
-        pose.cut = false; // said once, below
+        pose.cut = false; // set below, once per jump
         for (; jumped < next; ++jumped) {
             pose.cut = pose.cut || poses[jumped].pose.cut;
         }

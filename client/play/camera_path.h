@@ -7,29 +7,24 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
-// Where a user who steers from the command line wants the camera.
+// Camera poses of a user who steers from the command line.
 namespace fieldcast::client::play {
 
-/// The pose at a moment, `seconds` after we began to steer, if there is a new one since the last call. `start`: where
-/// the camera was when we came.
+/// The pose `seconds` after we began to steer, or nothing if there is no new one since the last call. `start`: the pose
+/// of the camera at the beginning.
 using PoseSource = std::function<std::optional<net::WantedPose>(double seconds, const glm::mat4& start)>;
 
-/// "orbit:radius=2,seconds=10": around the point `radius` metres in front of where the camera was, +Y up, once in so
-/// many seconds. "-": poses from standard input, one JSON object a line, the newest wins. Else a file: a JSON array of
-/// such objects with their `time_s`. Throws UserError.
+/// "orbit:radius=2,seconds=10": a turn every 10 s around the point 2 m in front of the camera, +Y up. "-": poses from
+/// standard input, one JSON object per line; the newest is used. Anything else is a file: a JSON array of such objects
+/// with their `time_s`. Throws UserError.
 PoseSource read_camera_path(const std::string& text);
 
-/// The camera's way round, after `share` of a turn.
+/// The pose after `share` of a turn around the point `radius_m` in front of `start`.
 glm::mat4 orbit_pose(const glm::mat4& start, float radius_m, double share);
 
-/// {"position": [x, y, z], "look_at": [x, y, z]}, or {"world_from_camera": [12 numbers]} as in the protocol; with
-/// "cut": true it is a jump. Throws UserError that begins with `place`.
-net::WantedPose parse_pose(std::string_view json, const std::string& place);
-
-/// Poses at times: between two of them position and rotation are interpolated, before the first and after the last the
-/// camera rests there. Throws UserError.
+/// Reads poses and their times. Between two poses, position and rotation are interpolated; before the first and after
+/// the last pose, the camera rests. Throws UserError.
 PoseSource read_path_file(const std::filesystem::path& file);
 
 } // namespace fieldcast::client::play

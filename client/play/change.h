@@ -10,26 +10,26 @@
 
 namespace fieldcast::client::play {
 
-/// When something else is asked for on the running stream: so long after the first agreement of the run, or when so
-/// many frames have come. One of the two is set.
+/// When to request a change of the running stream. One of the two is set.
 struct ChangeMoment {
-    std::optional<std::chrono::milliseconds> after{};
-    std::optional<std::uint64_t> frames{};
+    std::optional<std::chrono::milliseconds> after{}; ///< since the first agreement of the run
+    std::optional<std::uint64_t> frames{};            ///< number of received frames
 };
 
+/// A request for another configuration on the running stream.
 struct Change {
     ChangeMoment moment;
-    net::Request request; ///< complete, not only what differs
+    net::Request request; ///< complete, not only the differences
 };
 
-/// Changes in their order, and where the run stands in them. Goes on over reconnects.
+/// The changes of a run, in their order, and which one is next. Reconnects do not restart it.
 class ChangeSchedule {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
     explicit ChangeSchedule(std::vector<Change> changes) : changes_(std::move(changes)) {}
 
-    /// The request to ask for now, if a change is due; each is returned once.
+    /// The request of the next change if it is due. Each is returned once.
     std::optional<net::Request> due(TimePoint now) {
         if (next_ >= changes_.size() || !begin_) {
             return std::nullopt;
@@ -46,7 +46,7 @@ public:
 private:
     std::vector<Change> changes_;
     std::size_t next_ = 0;
-    std::optional<TimePoint> begin_; ///< the first agreement
+    std::optional<TimePoint> begin_; ///< time of the first agreement
     std::uint64_t frames_ = 0;
 };
 

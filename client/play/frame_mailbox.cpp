@@ -6,7 +6,7 @@
 namespace fieldcast::client::play {
 
 void report_times(const Arrival& arrival, bool was_superseded, std::int64_t rendered_ns, std::int64_t shown_ns) {
-    const std::shared_ptr<net::Session> session = arrival.session.lock();
+    const std::shared_ptr<net::ClientSession> session = arrival.session.lock();
     if (!session) {
         return;
     }
@@ -37,7 +37,7 @@ void FrameMailbox::close() {
 
 std::optional<Arrival> FrameMailbox::take(const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] {
-        const auto state = state_.lock(); // so that the waiter is either before its check or truly waiting
+        const auto state = state_.lock(); // so that the waiting thread has not checked yet, or already waits
         changed_.notify_all();
     });
     auto state = state_.lock();

@@ -34,7 +34,7 @@ timing::DeliveredFrame frame_record(const net::FrameArrived& arrived, const std:
     return record;
 }
 
-void add_record(timing::Recorder& recorder, timing::DeliveredFrame record) {
+void add_record(timing::TimingRecorder& recorder, timing::DeliveredFrame record) {
     recorder.add(record.made);
     recorder.add(std::move(record));
 }

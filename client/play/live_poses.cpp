@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/live_poses.h"
 
-#include "client/play/camera_path.h"
+#include "client/play/pose_text.h"
 #include "core/base/error.h"
 #include "core/base/log.h"
 
@@ -32,11 +32,11 @@ void LivePoses::read_until(const std::stop_token& stop, int descriptor) {
     while (!stop.stop_requested()) {
         pollfd waiting{.fd = descriptor, .events = POLLIN, .revents = 0};
         if (::poll(&waiting, 1, kLookAtStop_ms) <= 0) {
-            continue; // nothing yet, or a signal
+            continue; // no input yet, or a signal
         }
         const ssize_t count = ::read(descriptor, block.data(), block.size());
         if (count <= 0 || text.size() > kMaxLineBytes) {
-            return; // the end, or no lines
+            return; // end of input, or a line that is too long
         }
         text.append(block.data(), static_cast<std::size_t>(count));
         for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
@@ -53,7 +53,7 @@ void LivePoses::add(const std::string& line, std::uint64_t number) {
         pose.cut = pose.cut || (*newest && (*newest)->cut);
         *newest = pose;
     } catch (const UserError& problem) {
-        log::warn("no pose", {{"problem", problem.what()}});
+        log::warn("line is not a pose", {{"problem", problem.what()}});
     }
 }
 

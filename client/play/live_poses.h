@@ -9,13 +9,13 @@
 
 namespace fieldcast::client::play {
 
-/// Poses that come while we steer: JSON objects, one a line, from a file descriptor. Has one thread, which waits for
-/// lines. A line that is no pose is told in the log and passed over.
+/// Reads poses while we steer: one JSON object per line, from a file descriptor. Has one thread, which waits for lines.
+/// Ignores lines that are not poses, with a warning in the log.
 class LivePoses {
 public:
     explicit LivePoses(int descriptor);
 
-    /// The newest pose since the last call; its `cut` is set if any since then was a jump.
+    /// The newest pose since the last call, if any. Its `cut` is set if one of the poses since then was a jump.
     std::optional<net::WantedPose> take();
 
 private:

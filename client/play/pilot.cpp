@@ -7,49 +7,50 @@
 namespace fieldcast::client::play {
 namespace {
 
-constexpr std::chrono::milliseconds kPosePeriod{16}; // about as often as displays show pictures
-constexpr int kSignsOfLifePerLease = 3;              // two may be late
+constexpr std::chrono::milliseconds kPosePeriod{16}; // about the frame time of a 60 Hz display
+constexpr int kKeepAlivesPerLease = 3;               // two may be late
 
 } // namespace
 
-void Pilot::begin(net::Session& session) {
+void Pilot::begin(net::ClientSession& session) {
     lease_ = 0;
     start_.reset();
     session.send(net::to_request(options_.waits));
 }
 
-void Pilot::look(net::Session& session, Clock::time_point now) {
+void Pilot::steer(net::ClientSession& session, Clock::time_point now) {
     if (!is_steering() || now < next_pose_) {
         return;
     }
     next_pose_ = now + kPosePeriod;
     const double seconds = std::chrono::duration<double>(now - begun_).count();
-    const auto pose = start_ ? options_.poses(seconds, *start_) : std::nullopt; // until a frame tells where it is
+    const auto pose = start_ ? options_.poses(seconds, *start_) : std::nullopt; // no `start_` before the first frame
     if (pose) {
         session.send(net::to_pose(*pose, ++sequence_, net::steady_now_ns()));
-    } else if (now - last_sent_ >= sign_of_life_period_) {
-        session.send(net::sign_of_life());
+    } else if (now - last_sent_ >= keep_alive_period_) {
+        session.send(net::keep_alive());
     } else {
         return;
     }
     last_sent_ = now;
 }
 
-std::optional<std::string> Pilot::handle(net::Session& session, const net::SteeringNews& news, Clock::time_point now) {
+std::optional<std::string> Pilot::handle(net::ClientSession& session, const net::SteeringNews& news,
+                                         Clock::time_point now) {
     using Kind = net::SteeringNews::Kind;
     switch (news.kind) {
     case Kind::kGranted:
         log::info("we steer", {{"lease", news.lease}});
         lease_ = news.lease;
         sequence_ = shown_sequence_ = 0;
-        sign_of_life_period_ = news.expires_after / kSignsOfLifePerLease;
+        keep_alive_period_ = news.expires_after / kKeepAlivesPerLease;
         begun_ = next_pose_ = last_sent_ = now;
         return std::nullopt;
     case Kind::kWaiting:
         log::warn("waiting for the camera", {{"reason", news.message}});
         return std::nullopt;
     case Kind::kPassedOver:
-        log::warn("pose not taken", {{"reason", news.message}});
+        log::warn("server ignored a pose", {{"reason", news.message}});
         return std::nullopt;
     case Kind::kRefused:
         return "not steering: " + news.message;
@@ -57,7 +58,7 @@ std::optional<std::string> Pilot::handle(net::Session& session, const net::Steer
         session.send(net::to_request(true));
         [[fallthrough]];
     case Kind::kReleased:
-        log::warn("we do not steer any more", {{"reason", news.message}});
+        log::warn("we no longer steer", {{"reason", news.message}});
         lease_ = 0;
         return std::nullopt;
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/playback.h"
-#include "client/play/frame_record.h"
-#include "client/play/render_side.h"
 
+#include "client/play/frame_record.h"
+#include "client/play/local_renderers.h"
+#include "core/base/error.h"
 #include "core/base/log.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 namespace fieldcast::client::play {
 namespace {
 
-/// A shown frame; kept as long as it may have to be written.
+/// A shown frame, kept while it may have to be written.
 struct Shown {
     std::uint64_t frame_id = 0;
     ViewGrid grid;
@@ -24,7 +25,7 @@ struct Shown {
 };
 
 constexpr std::size_t kRememberedEpochs = 256;
-constexpr std::size_t kRememberedFrames = 1U << 16; // statistics of endless runs are about the last ones
+constexpr std::size_t kRememberedFrames = 1U << 16; // endless runs have statistics of the last ones
 
 std::optional<double> ms_between(const std::optional<std::int64_t>& begin_ns, std::int64_t end_ns) {
     return begin_ns ? std::optional(static_cast<double>(end_ns - *begin_ns) * 1e-6) : std::nullopt;
@@ -43,7 +44,7 @@ std::string grid_text(const ViewGrid& grid) {
     return std::to_string(grid.rows) + "x" + std::to_string(grid.cols);
 }
 
-/// Empty: we asked for it.
+/// Why the server changed the configuration; empty: we requested it.
 std::string reason_text(const net::Agreement& agreement) {
     if (!agreement.adapted) {
         return "";
@@ -57,14 +58,15 @@ std::string size_text(const wire::ViewSet& set) {
     return std::to_string(set.width_px) + "x" + std::to_string(set.height_px);
 }
 
+/// Shows frames: makes their views, writes their files, and keeps statistics.
 class Player {
 public:
-    Player(const PlayOptions& options, RenderSide* render_side, timing::Recorder* recorder)
-        : options_(options), render_side_(render_side), recorder_(recorder) {}
+    Player(const PlayOptions& options, LocalRenderers* renderers, timing::TimingRecorder* recorder)
+        : options_(options), renderers_(renderers), recorder_(recorder) {}
 
     /// False if the frame could not be shown.
     bool show(Arrival arrival);
-    /// Writes the last frame if that was put off.
+    /// Writes the last frame with Save::kLast.
     void finish();
     std::uint64_t shown_count() const { return shown_count_; }
     Summary summary(const StreamCounts& counts) const;
@@ -77,8 +79,8 @@ private:
     void count_epoch(const Arrival& arrival);
 
     const PlayOptions& options_;
-    RenderSide* render_side_;    ///< null if all views come finished
-    timing::Recorder* recorder_; ///< null: none
+    LocalRenderers* renderers_;  ///< null: the server makes all views
+    timing::TimingRecorder* recorder_; ///< null: none
     std::optional<Shown> last_;
     std::uint64_t shown_count_ = 0;
     std::deque<ShownFrame> frames_; ///< the last ones
@@ -95,8 +97,8 @@ Decoded<Shown> Player::make(Arrival& arrival) {
         shown.views = std::move(received->views);
         return shown;
     }
-    FC_ASSERT(render_side_ != nullptr, "source frames are agreed on only where views are made here");
-    Decoded<Views> views = render_side_->play(shown.mode, std::get<SourceFrame>(arrival.arrived.frame.content), set);
+    FC_ASSERT(renderers_ != nullptr, "only clients with renderers request source frames");
+    Decoded<Views> views = renderers_->play(shown.mode, std::get<SourceFrame>(arrival.arrived.frame.content), set);
     if (!views) {
         return tl::unexpected(views.error());
     }
@@ -178,7 +180,7 @@ void Player::count_epoch(const Arrival& arrival) {
 void Player::write(const std::filesystem::path& folder) const {
     std::optional<SourceFrame> source;
     if (options_.products.source_exr && row_of(last_->mode).needs_scene) {
-        source = render_side_->source(); // of the frame played last, which is the one shown last
+        source = renderers_->source(); // of the last frame played, which is the last one shown
     }
     const image::LightFieldPicture picture{last_->grid, last_->views, source ? &*source : nullptr};
     image::write_light_field(folder, picture, options_.products);
@@ -221,26 +223,16 @@ void describe(const PlayOptions& options, const std::optional<net::Agreement>& a
 
 } // namespace
 
-bool asks_for(const PlayOptions& options, DeliveryMode mode) {
-    return options.request.mode == mode ||
-           std::ranges::any_of(options.changes, [&](const Change& change) { return change.request.mode == mode; });
-}
-
-bool needs_scene(const PlayOptions& options) {
-    const bool may_adapt = options.request.adaptation && options.request.adaptation->allows_scene;
-    return may_adapt || asks_for(options, DeliveryMode::kScene);
-}
-
 PlayResult play(const PlayOptions& options, const OnProgress& on_progress, const std::stop_token& stop) {
-    const std::unique_ptr<RenderSide> render_side = RenderSide::make(options, stop);
-    std::optional<timing::Recorder> recorder;
+    const std::unique_ptr<LocalRenderers> renderers = LocalRenderers::make(options, stop);
+    std::optional<timing::TimingRecorder> recorder;
     if (options.timing_files.any()) {
         recorder.emplace(options.timing_files);
     }
-    timing::Recorder* const records = recorder ? &*recorder : nullptr;
-    Receiver receiver(options.server, options.request, render_side ? render_side->scene_hash() : std::nullopt,
+    timing::TimingRecorder* const records = recorder ? &*recorder : nullptr;
+    Receiver receiver(options.server, options.request, renderers ? renderers->scene_hash() : std::nullopt,
                       {.steering = options.steering, .changes = options.changes, .recorder = records});
-    Player player(options, render_side.get(), records);
+    Player player(options, renderers.get(), records);
     std::optional<net::Agreement> agreement;
     const auto is_complete = [&] { return options.frames != 0 && player.shown_count() >= options.frames; };
     while (!is_complete()) {

@@ -2,7 +2,6 @@
 #include "client/play/receiver.h"
 
 #include "client/play/frame_record.h"
-
 #include "core/base/log.h"
 #include "core/base/printable.h"
 #include "core/scene/bundle.h"
@@ -17,19 +16,19 @@ using Clock = std::chrono::steady_clock;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-constexpr unsigned kDecodingThreads = 4; // more strips than that are rarely waiting
+constexpr unsigned kDecodingThreads = 4; // more strips than this rarely wait
 
 template <class... Handlers> struct Overloaded : Handlers... { using Handlers::operator()...; };
 
 } // namespace
 
 struct Receiver::SessionState {
-    std::shared_ptr<net::Session> session;
+    std::shared_ptr<net::ClientSession> session;
     Attempts* attempts = nullptr;
     std::optional<net::Agreement> agreement;
-    net::Request granted; ///< what `agreement` answers
+    net::Request granted; ///< the request that `agreement` answers
     std::optional<SessionEnd> end;
-    std::optional<Clock::time_point> cut_at; ///< we half-closed; the server has so long to finish
+    std::optional<Clock::time_point> cut_at; ///< set after our half-close: the time at which we stop waiting
 
     void leave(std::chrono::milliseconds grace) {
         session->half_close();
@@ -81,14 +80,14 @@ Receiver::SessionEnd Receiver::run_session(const std::stop_token& stop, Attempts
     const net::Connection connection(server_.address, server_.access);
     SessionState state;
     state.attempts = &attempts;
-    state.session = std::make_shared<net::Session>(connection, request_, pool_);
+    state.session = std::make_shared<net::ClientSession>(connection, request_, pool_);
     while (!state.end) {
         const auto look_at = Clock::now() + kLookAtStop;
         if (auto event = state.session->next(pilot_ ? std::min(look_at, pilot_->next_call()) : look_at)) {
             handle(std::move(*event), state);
         }
         if (pilot_) {
-            pilot_->look(*state.session, Clock::now());
+            pilot_->steer(*state.session, Clock::now());
         }
         ask_for_change(state);
         if (stop.stop_requested() && !state.cut_at) {
@@ -134,7 +133,7 @@ void Receiver::ask_for_change(SessionState& state) {
     }
 }
 
-/// Without room for it the stream goes on as it was; what cannot be had at all was asked for by mistake.
+/// A change that the server has no capacity for leaves the stream as it is. Any other refusal ends the session.
 void Receiver::refused(const net::Refused& refused, SessionState& state) {
     if (refused.was_change && refused.is_transient) {
         log::warn("change refused", {{"reason", refused.message}});
@@ -179,7 +178,7 @@ void Receiver::agreed(net::Agreement agreement, SessionState& state) {
 
 void Receiver::steered(const net::SteeringNews& news, SessionState& state) {
     if (!pilot_) {
-        return; // what nobody asked for
+        return; // we did not request the camera
     }
     if (auto problem = pilot_->handle(*state.session, news, Clock::now())) {
         state.end = SessionEnd{std::move(*problem), false, true};

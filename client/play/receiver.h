@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "client/net/session.h"
+#include "client/net/client_session.h"
 #include "client/play/attempts.h"
 #include "client/play/change.h"
 #include "client/play/frame_mailbox.h"
 #include "client/play/pilot.h"
+#include "client/play/server_options.h"
 #include "client/play/statistics.h"
-#include "core/timing/recorder.h"
+#include "core/timing/timing_recorder.h"
 
 #include <chrono>
 #include <optional>
@@ -16,40 +17,32 @@
 
 namespace fieldcast::client::play {
 
-/// How to reach a server, and what to do when that fails.
-struct ServerOptions {
-    std::string address = "127.0.0.1:50151"; ///< "host:port"
-    net::Access access{};
-    bool reconnects = true;
-    std::chrono::milliseconds patience{30'000}; ///< gives up when nothing has worked for so long
-};
-
-/// Why no more frames come.
+/// Why no more frames arrive.
 struct Failure {
     std::string message;
-    bool was_refused = false; ///< the server will not do what was asked, or for whom: another request or token may work
+    bool was_refused = false; ///< by the server; another request or token may succeed
 };
 
-/// What a receiver may do besides.
+/// Optional duties of a Receiver.
 struct ReceiverExtras {
-    std::optional<SteeringOptions> steering{}; ///< moves the camera, too
-    std::vector<Change> changes{};             ///< are asked for on the running stream
-    /// Gets frames that are superseded, and arrivals a record; null: none. Must outlive this.
-    timing::Recorder* recorder = nullptr;
+    std::optional<SteeringOptions> steering{}; ///< set: it also moves the camera
+    std::vector<Change> changes{};             ///< requested on the running stream
+    /// Receives superseded frames; if it is set, each Arrival has a record. Null: none. Must outlive the Receiver.
+    timing::TimingRecorder* recorder = nullptr;
 };
 
-/// Keeps a session with a server: opens it, decodes frames into the mailbox, comes back after interruptions. Has one
-/// thread, which may block on the network and on decoding.
+/// Maintains a session with a server: opens it, decodes frames into the mailbox, and reconnects after interruptions.
+/// Has one thread, which may block on the network and on decoding.
 class Receiver {
 public:
-    /// `scene_hash`: of the scene at hand (mode kScene); a server that shows another one is left.
+    /// `scene_hash`: of the scene that we have, if any. The session ends if the server shows another scene.
     Receiver(const ServerOptions& server, const net::Request& request, std::optional<scene::SceneHash> scene_hash,
              ReceiverExtras extras = {});
 
-    /// The newest complete frame. Nothing on a stop request, or when no more will come (see `failure`).
+    /// Waits for the newest complete frame. Nothing on a stop request, or after the last frame (see `failure`).
     std::optional<Arrival> take(const std::stop_token& stop) { return mailbox_.take(stop); }
 
-    /// Half-closes, waits for the server to finish (2 s at most), ends the thread.
+    /// Half-closes, waits at most 2 s until the server has finished, and ends the thread.
     void finish();
 
     StreamCounts counts() { return *counts_.lock(); }
@@ -62,7 +55,7 @@ private:
         bool was_refused = false;
         net::Obstacle obstacle = net::Obstacle::kRefused;
     };
-    struct SessionState; ///< of the session in progress, for the thread
+    struct SessionState; ///< of the current session; for the thread
 
     void run(const std::stop_token& stop);
     SessionEnd run_session(const std::stop_token& stop, Attempts& attempts);
@@ -74,11 +67,11 @@ private:
     void steered(const net::SteeringNews& news, SessionState& state);
 
     ServerOptions server_;
-    net::Request request_; ///< asked for last, and again after a reconnect
+    net::Request request_; ///< the last one; repeated after a reconnect
     ChangeSchedule changes_;
     std::optional<scene::SceneHash> scene_hash_;
     std::optional<Pilot> pilot_; ///< for the thread
-    timing::Recorder* recorder_;
+    timing::TimingRecorder* recorder_;
     WorkerPool pool_;
     FrameMailbox mailbox_;
     Guarded<StreamCounts> counts_;

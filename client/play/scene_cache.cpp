@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/scene_cache.h"
-#include "client/net/connection.h"
+
+#include "client/net/net_error.h"
 #include "client/play/cache_entry.h"
 #include "core/base/log.h"
 
@@ -25,7 +26,7 @@ using std::chrono_literals::operator""ms;
     throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// An exclusive lock between processes, as long as this lives. The kernel frees it when a process dies.
+/// An exclusive lock between processes, held during the lifetime of this. The kernel releases it when a process dies.
 class FolderLock {
 public:
     FolderLock(const fs::path& file, const std::stop_token& stop)
@@ -33,7 +34,7 @@ public:
         if (descriptor_ < 0) {
             throw_errno(file.string());
         }
-        // There is no event for "another process let go" that a stop request could interrupt, so ask again and again.
+        // A stop request could not interrupt a blocking flock(), so try again every 50 ms.
         std::mutex mutex;
         std::condition_variable_any stopped;
         std::unique_lock lock(mutex);
@@ -55,7 +56,7 @@ private:
     int descriptor_;
 };
 
-/// Bytes that have arrived of a bundle, on disk.
+/// The received part of a bundle, on disk.
 class PartFile {
 public:
     explicit PartFile(fs::path file) : file_(std::move(file)) {}
@@ -66,7 +67,7 @@ public:
         return missing ? 0 : bytes;
     }
 
-    /// Appends what `fetch` delivers. What has arrived stays on disk when it throws.
+    /// Appends the bytes from `fetch`. If `fetch` throws, the bytes received so far stay on disk.
     void complete(const scene::SceneHash& hash, const FetchBundle& fetch) {
         std::ofstream out(file_, std::ios::binary | std::ios::app);
         std::uint64_t arrived = size();
@@ -105,7 +106,7 @@ private:
     fs::path file_;
 };
 
-/// Fetches the rest of the bundle. Anything but a cut transfer makes what has arrived worthless.
+/// Fetches the rest of the bundle. Removes the part file after any error but an interrupted transfer.
 std::vector<std::byte> fetch_rest(const scene::SceneHash& hash, PartFile& part, const FetchBundle& fetch) {
     try {
         part.complete(hash, fetch);
@@ -113,7 +114,7 @@ std::vector<std::byte> fetch_rest(const scene::SceneHash& hash, PartFile& part, 
         if (scene::hash_bundle(bundle) == hash) {
             return bundle;
         }
-        throw net::NetError("the server sent something else than the scene " + scene::to_hex(hash), false);
+        throw net::NetError("the server sent another bundle than that of scene " + scene::to_hex(hash), false);
     } catch (const net::NetError& error) {
         if (!error.is_transient()) {
             part.remove();
@@ -132,12 +133,12 @@ std::vector<std::byte> fetch_verified(const scene::SceneHash& hash, const fs::pa
         if (!resumes || error.is_transient()) {
             throw;
         }
-        log::warn("scene part was of no use, fetching it anew", {{"hash", scene::to_hex(hash)}});
+        log::warn("partial scene is unusable; fetching the scene again", {{"hash", scene::to_hex(hash)}});
         return fetch_rest(hash, part, fetch);
     }
 }
 
-/// Unpacks beside `target` and renames: `target` appears complete or not at all.
+/// Unpacks into a temporary folder and renames it, so that `target` appears complete or not at all.
 void unpack_into(const fs::path& target, std::span<const std::byte> bundle) {
     std::string name = target.string() + ".XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) {
@@ -171,7 +172,7 @@ fs::path SceneCache::default_folder() {
     if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
         return fs::path(home) / ".cache" / "fieldcast";
     }
-    throw UserError("no place for the scene cache: neither XDG_CACHE_HOME nor HOME is set; use --cache");
+    throw UserError("no folder for the scene cache: neither XDG_CACHE_HOME nor HOME is set; use --cache");
 }
 
 scene::UnpackedBundle SceneCache::get(const scene::SceneHash& hash, const FetchBundle& fetch,
@@ -186,7 +187,7 @@ scene::UnpackedBundle SceneCache::get(const scene::SceneHash& hash, const FetchB
     }
     const fs::path part_file = target.string() + ".part";
     const std::vector<std::byte> bundle = fetch_verified(hash, part_file, fetch);
-    fs::remove_all(target); // a folder without an entry is of no use
+    fs::remove_all(target); // it has no valid entry
     unpack_into(target, bundle);
     PartFile(part_file).remove();
     log::info("scene cached", {{"hash", scene::to_hex(hash)}, {"bytes", bundle.size()}});

@@ -31,7 +31,7 @@ Decoded<Views> ScenePlayer::play(const SourceFrame& frame, const wire::ViewSet& 
         return decode_error("header.layer_count: " + std::to_string(frame.header.layer_count) + ", the scene needs " +
                             std::to_string(expected_layers));
     }
-    if (expected_layers > 0 || !has_surfaces(frame)) { // the surfaces of layers never travel
+    if (expected_layers > 0 || !has_surfaces(frame)) { // surfaces of layers are never sent
         surfaces_.render(planes_);
     }
     return views_.render(planes_, view_set_request(set));

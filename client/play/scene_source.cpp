@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/play/scene_source.h"
-#include "client/net/catalog.h"
-#include "client/play/scene_cache.h"
 
+#include "client/net/catalog.h"
+#include "client/play/attempts.h"
+#include "client/play/scene_cache.h"
 #include "core/base/log.h"
 #include "core/base/printable.h"
 #include "core/scene/gltf/loader.h"
@@ -25,7 +26,7 @@ scene::SceneHash hash_of_channel(const std::vector<net::ChannelInfo>& channels, 
     return found->scene_hash;
 }
 
-/// Runs `attempt` until it succeeds or trying again makes no sense.
+/// Repeats `attempt` until it succeeds, fails permanently, or patience ends.
 template <class Attempt> auto persistently(const ServerOptions& server, const std::stop_token& stop, Attempt attempt) {
     Attempts attempts(server.reconnects, server.patience);
     while (true) {
@@ -58,7 +59,7 @@ scene::Scene obtain_scene(const ServerOptions& server, const std::string& channe
         return hash_of_channel(net::list_channels(connection), channel);
     });
     SceneCache cache(cache_folder);
-    // A cut transfer leaves what arrived in the cache, so the next attempt asks only for the rest.
+    // An interrupted transfer leaves its bytes in the cache, so the next attempt fetches only the rest.
     const FetchBundle fetch = [&](const scene::SceneHash& wanted, std::uint64_t offset, const TakePiece& take) {
         const net::Connection connection(server.address, server.access);
         net::fetch_scene(
@@ -69,7 +70,7 @@ scene::Scene obtain_scene(const ServerOptions& server, const std::string& channe
     try {
         return persistently(server, stop, load);
     } catch (const UserError& error) {
-        log::warn("cached scene is damaged, fetching it anew", {{"reason", error.what()}});
+        log::warn("cached scene is damaged; fetching it again", {{"reason", error.what()}});
         cache.forget(hash);
         return persistently(server, stop, load);
     }

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "core/render/view_request.h"
-#include "core/wire/frame_assembler.h"
+#include "core/wire/view_set.h"
 
 namespace fieldcast::client::play {
 
-/// The views of `set`, row-major, as renderers want to be asked.
+/// Converts `set` to a request to a renderer; its views are row-major.
 inline render::ViewRequest view_set_request(const wire::ViewSet& set) {
     render::ViewRequest request;
     request.geometry = set.grid.geometry;

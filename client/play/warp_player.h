@@ -3,7 +3,7 @@
 
 #include "core/gpu/device.h"
 #include "core/render/warp/warp_renderer.h"
-#include "core/wire/frame_assembler.h"
+#include "core/wire/view_set.h"
 
 namespace fieldcast::client::play {
 
@@ -13,7 +13,7 @@ public:
     /// `device` must outlive this.
     explicit WarpPlayer(const gpu::Device& device) : renderer_(device) {}
 
-    /// Makes the views of `set`. Fails for frames that do not fit together.
+    /// Makes the views of `set`. Fails for frames whose contents do not match.
     Decoded<Views> play(const SourceFrame& frame, const wire::ViewSet& set);
 
 private:

@@ -14,13 +14,13 @@ namespace {
 constexpr std::size_t kMaxTokenBytes = 256;
 constexpr std::size_t kMaxTokenLines = 64;
 
-/// Without the white space around it, which editors and shells add.
+/// `line` without the white space around it, which editors and shells add.
 std::string trimmed(const std::string& line) {
     constexpr const char* kSpace = " \t\r\n";
     const std::size_t begin = line.find_first_not_of(kSpace);
     return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(kSpace) - begin + 1);
 }
-/// `source` names the place, for people.
+/// `source` names the origin of `text` in messages.
 std::string checked_token(const std::string& text, const std::string& source) {
     std::string token = trimmed(text);
     const auto is_visible = [](char c) { return c > 0x20 && c < 0x7F; };
@@ -48,7 +48,7 @@ std::string read_bearer_token(const std::filesystem::path& path, const std::stri
             return checked_token(text, place);
         }
     }
-    throw UserError(place + ": there is no token in it");
+    throw UserError(place + ": contains no token");
 }
 
 std::string token_of_environment() {

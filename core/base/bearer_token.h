@@ -6,14 +6,15 @@
 
 namespace fieldcast {
 
-/// The variable of the environment that holds a token. There is no flag: other users see a process' arguments.
+/// Environment variable that holds the token. No flag takes a token, because other users can see the arguments of a
+/// process.
 inline constexpr const char* kTokenVariable = "FIELDCAST_TOKEN";
 
-/// A token: the first line of `file` that is neither empty nor a comment (#), or, without a file, `text`, which may be
-/// empty. `flag` names the file's flag in messages. Throws UserError, which never shows the token.
+/// Returns the first line of `file` that is neither empty nor a comment (#); without a file, returns `text`, which may
+/// be empty. Messages call the file by its flag, `flag`. Throws UserError, whose message never shows the token.
 std::string read_bearer_token(const std::filesystem::path& file, const std::string& text, const std::string& flag);
 
-/// The value of FIELDCAST_TOKEN; empty: not set.
+/// Value of FIELDCAST_TOKEN; empty if it is not set.
 std::string token_of_environment();
 
 } // namespace fieldcast

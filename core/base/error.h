@@ -14,23 +14,23 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Why bytes from outside could not be decoded.
+/// Reason why untrusted bytes could not be decoded.
 struct DecodeError {
     std::string message; ///< names the field and the limit
 };
 
-/// Result of decoding bytes from outside: never throws, never allocates more than its stated limits.
+/// Result of decoding untrusted bytes. Decoders never throw and never allocate more than their stated limits.
 template <class T> using Decoded = tl::expected<T, DecodeError>;
 
 inline tl::unexpected<DecodeError> decode_error(std::string message) {
     return tl::unexpected(DecodeError{std::move(message)});
 }
 
-/// Throws std::logic_error naming file and line: the bug is ours.
+/// Throws std::logic_error that names file and line. It means that Fieldcast has a bug.
 [[noreturn]] void assertion_failed(const char* condition, const char* message, const char* file, int line);
 
 } // namespace fieldcast
 
-/// Checks an invariant of our own code, in every build type.
+/// Checks an invariant of Fieldcast's own code, in every build type.
 #define FC_ASSERT(condition, message)                                                                                  \
     ((condition) ? static_cast<void>(0) : ::fieldcast::assertion_failed(#condition, message, __FILE__, __LINE__))

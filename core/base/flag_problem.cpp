@@ -11,7 +11,7 @@ bool is_digits(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// What to write instead of `value`.
+/// Advice on a valid value instead of `value`.
 std::string advice(const std::string& type, std::string_view value) {
     if (type == "UINT" || type == "INT") {
         return is_digits(value)  ? "this number is too large"

@@ -7,9 +7,9 @@
 
 namespace fieldcast {
 
-/// What CLI11 says of a value that it cannot take, in words for people: the flag, the problem, what to write. `kind` is the
-/// name of its exception, `said` its text; `type_of` tells the type that CLI11 names for a flag ("UINT"). Text of any other
-/// kind stays as it is.
+/// Rewrites CLI11's message about a value that it rejects: the result names the flag, the problem and a valid value.
+/// `kind` is the name of CLI11's exception, `said` is its text. `type_of` returns the type that CLI11 names for a flag
+/// ("UINT"). Returns text of any other kind unchanged.
 std::string flag_problem(const std::string& kind, const std::string& said,
                          const std::function<std::string(const std::string& flag)>& type_of);
 

@@ -21,7 +21,7 @@ std::optional<HostPort> parse_host_port(std::string_view text) {
     const std::string_view host = text.substr(0, colon);
     const bool has_brackets = host.front() == '[' && host.back() == ']';
     if (!has_brackets && host.find(':') != std::string_view::npos) {
-        return std::nullopt; // an IPv6 address without brackets: where the port begins is a guess
+        return std::nullopt; // ambiguous: an IPv6 address without brackets
     }
     int port = 0;
     const char* const end = text.data() + text.size();

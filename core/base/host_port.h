@@ -7,7 +7,7 @@
 
 namespace fieldcast {
 
-/// "127.0.0.1:50151", "[::1]:0", "localhost:80".
+/// An address such as "127.0.0.1:50151", "[::1]:0" or "localhost:80".
 struct HostPort {
     std::string host; ///< IPv6 addresses in brackets
     int port = 0;     ///< 0 to 65535
@@ -15,12 +15,12 @@ struct HostPort {
     bool operator==(const HostPort&) const = default;
 };
 
-/// Nothing unless `text` is HOST:PORT.
+/// Parses HOST:PORT; empty if `text` has another form.
 std::optional<HostPort> parse_host_port(std::string_view text);
 
 std::string to_text(const HostPort& address);
 
-/// Whether what is sent to `host` stays on this machine: 127.0.0.0/8, [::1] and localhost. Asks no name service.
+/// Whether `host` is a loopback address: 127.0.0.0/8, [::1] or localhost. Queries no name service.
 bool is_loopback(const std::string& host);
 
 } // namespace fieldcast

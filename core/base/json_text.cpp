@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789abcdef";
 
-/// Two of them for what lies beyond U+FFFF (RFC 8259, section 7).
+/// Appends one escape, or two for characters beyond U+FFFF (RFC 8259, section 7).
 void append_escape(std::string& result, char32_t code) {
     if (code > 0xFFFF) {
         append_escape(result, 0xD800 + ((code - 0x10000) >> 10U));

@@ -30,8 +30,8 @@ enum class Format {
     kJson, ///< one object per line: time (UTC), level, event, and each field under its key
 };
 
-/// Lines go to standard error.
-/// error: someone must act; warn: degraded; info: lifecycle; debug: per frame. Thread-safe.
+/// Lines are written to standard error.
+/// Levels: error: an operator must act; warn: degraded; info: lifecycle; debug: per frame. Thread-safe.
 void set_level(Level level);
 void set_format(Format format);
 void debug(std::string_view event, Fields fields = {});

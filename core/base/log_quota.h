@@ -12,19 +12,21 @@
 
 namespace fieldcast::log {
 
-/// Writes what a peer causes to be logged, but only so many lines of each event. What it leaves out it counts, and says
-/// the count in a line of its own before the next line of that event, or when it ends. Thread-safe.
+/// Limits the rate of the log lines that a peer causes, separately for each event. Lines beyond the rate are omitted
+/// and counted. A line of its own reports the count before the next line of that event, or in the destructor.
+/// Thread-safe.
 ///
 ///     log::Quota lines("session 7");
-///     lines.write(log::Level::kInfo, "session configured", {{"rows", 4}}); // as often as a client likes
+///     lines.write(log::Level::kInfo, "session configured", {{"rows", 4}}); // at any rate that a client causes
 class Quota {
 public:
     using TimePoint = RateLimit::TimePoint;
 
-    /// Of one session: each event ten times at once, then every half minute.
+    /// Rate of one session, per event: 10 lines at once, then one every 30 s.
     static constexpr RateLimit::Rate kOfSession{.per_second = 1.0 / 30.0, .burst = 10.0};
 
-    /// Of everybody together, who may not fill the disk: each event 20 times at once, then every second.
+    /// Rate of all peers together, so that they cannot fill the disk, per event: 20 lines at once, then one every
+    /// second.
     static constexpr RateLimit::Rate kOfEverybody{.per_second = 1.0, .burst = 20.0};
 
     explicit Quota(std::string owner, RateLimit::Rate of_event = kOfSession)

@@ -20,11 +20,11 @@ public:
 
     explicit RateLimit(Rate rate) : rate_(rate), left_(rate.burst) {}
 
-    /// Whether one more event may happen, or one that counts as `amount`; if so, it counts. `now` must not go
+    /// Returns whether an event that counts as `amount` may happen now, and counts it if so. `now` must not go
     /// backwards.
     bool take(TimePoint now, double amount = 1.0);
 
-    /// Nothing has happened for so long that a new RateLimit would behave the same.
+    /// Whether the full burst is available, so that a new RateLimit would behave the same.
     bool is_idle(TimePoint now) const { return left_at(now) >= rate_.burst; }
 
 private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::initializer_list<int> kStopSignals = {SIGTERM, SIGINT};
 
-std::atomic<pthread_t> waiting; // the thread that waits, or the one that made the StopSignals
+std::atomic<pthread_t> waiting; // the thread that called wait(), before that the one that constructed StopSignals
 static_assert(std::atomic<pthread_t>::is_always_lock_free, "signal handlers may not lock");
 
 sigset_t stop_set() {
@@ -25,7 +25,7 @@ sigset_t stop_set() {
     return set;
 }
 
-/// In a thread that does not block the signal.
+/// Forwards the signal. Runs in a thread that does not block it.
 extern "C" void pass_on(int signal) {
     pthread_kill(waiting.load(), signal);
 }

@@ -5,8 +5,9 @@
 
 namespace fieldcast {
 
-/// TERM and INT, waited for instead of handled. Make the only one of a process before any thread is started: threads
-/// inherit the mask. Threads of libraries that exist even before do not; what they are given is passed on.
+/// Waits for SIGTERM and SIGINT instead of handling them asynchronously. Construct the only one of a process before any
+/// thread is started, because threads inherit the signal mask. Threads that libraries started even earlier do not block
+/// the signals; signals that they receive are forwarded to the waiting thread.
 class StopSignals {
 public:
     StopSignals();
@@ -14,7 +15,8 @@ public:
     StopSignals(const StopSignals&) = delete;
     StopSignals& operator=(const StopSignals&) = delete;
 
-    /// True: one arrived; false: none within `timeout`. Call it in one thread only, and not after that has ended.
+    /// True if a signal arrived, false if none did within `timeout`. Call it from one thread only, and not after that
+    /// thread has ended.
     bool wait(std::chrono::milliseconds timeout) const;
 };
 

@@ -24,7 +24,7 @@ template <class T> std::string number_text(T number) {
     return error == std::errc{} ? std::string(std::begin(buffer), end) : "";
 }
 
-/// A single value; nothing if it is of a kind that no setting has.
+/// A scalar value as text; empty for types that settings do not have, and for long strings.
 std::optional<std::string> text_of(const toml::node& node) {
     if (const auto* text = node.as_string()) {
         return text->get().size() <= kMaxTextBytes ? std::optional(text->get()) : std::nullopt;
@@ -41,7 +41,7 @@ std::optional<std::string> text_of(const toml::node& node) {
     return std::nullopt;
 }
 
-/// Adds `key = node` to `entry`; false if a part of it is of no use.
+/// Adds the values of `node` to `entry`; false if one of them is not supported.
 bool add_values(const toml::node& node, TomlEntry& entry) {
     const toml::array* const array = node.as_array();
     if (array == nullptr) {
@@ -74,12 +74,12 @@ void add_entry(const std::string& place, const toml::key& key, const toml::node&
         entries.push_back(std::move(entry));
         return;
     }
-    problems.push_back(place_of(place, key) + ": write a text of at most " + std::to_string(kMaxTextBytes) +
+    problems.push_back(place_of(place, key) + ": write a string of at most " + std::to_string(kMaxTextBytes) +
                        " bytes, a number, true or false, or an array of at most " + std::to_string(kMaxValues) +
                        " of these");
 }
 
-/// The parsed file; nothing, and a problem, if it cannot be parsed.
+/// The parsed file. If it cannot be parsed, the result is empty and `problems` says why.
 std::optional<toml::table> parse_file(const std::filesystem::path& file, std::vector<std::string>& problems) {
     const std::string place = file.string();
     std::ifstream stream(file, std::ios::binary);
@@ -104,7 +104,7 @@ std::optional<toml::table> parse_file(const std::filesystem::path& file, std::ve
     }
 }
 
-/// Makes a TomlTree of what toml++ has parsed.
+/// Converts a table of toml++ into a TomlTree.
 class TreeReader {
 public:
     TreeReader(std::string place, std::vector<std::string>& problems) : place_(std::move(place)), problems_(problems) {}

@@ -14,7 +14,8 @@ struct CodeRange {
     char32_t last;
 };
 
-/// Unicode 15.1: general categories Cc, Zl and Zp, and of Cf what Bidi_Control and Default_Ignorable_Code_Point name.
+/// Unicode 15.1: general categories Cc, Zl and Zp, and characters of Cf with the property Bidi_Control or
+/// Default_Ignorable_Code_Point.
 constexpr std::array kCommands = std::to_array<CodeRange>({
     {0x0000, 0x001F},   // C0
     {0x007F, 0x009F},   // DELETE, C1

@@ -32,7 +32,7 @@ template <class Lane> Lane unfold(Lane folded, int bits) {
     return static_cast<Lane>((folded >> 1 ^ (0U - (folded & 1U))) & lane_mask<Lane>(bits));
 }
 
-/// One channel of one row and what it may be predicted from. `up` and `reference` may be null.
+/// One channel of one row, and the rows that predict it. `up` and `reference` may be null.
 template <class Lane> struct ChannelRow {
     const Lane* values = nullptr;
     const Lane* up = nullptr;
@@ -114,7 +114,7 @@ void restore_row(Predictor predictor, const typename Channels::Lane* errors, con
     restore<Channels>(errors, width, x, [](Lane left, std::size_t, std::size_t) { return left; });
 }
 
-/// A band whose pixels have that layout.
+/// A band whose pixels have the layout `Channels`.
 template <class Channels> class BandFilter {
 public:
     using Lane = typename Channels::Lane;
@@ -145,7 +145,7 @@ public:
 
     std::uint64_t cost(const std::byte* pixels, const std::byte* reference) {
         std::uint64_t bit_count = 0;
-        filter_.is_folded = true; // whatever the filter does with them: sizes are what counts
+        filter_.is_folded = true; // for the estimate only, which needs the sizes of errors
         for (std::size_t y = 0; y < rows_; y += kCostRowStep) {
             if (y > 0) {
                 Channels::load(pixels + (y - 1) * row_bytes(), width_, above_.data());

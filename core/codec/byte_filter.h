@@ -11,7 +11,7 @@
 // Reversible filters that make planes compressible. Part of the wire format: docs/protocol.md, "Strips".
 namespace fieldcast::codec {
 
-/// How a value is predicted from its neighbours in the same channel. Values are on the wire: never renumber.
+/// Prediction of a value from its neighbours in the same channel. Values are on the wire: never renumber.
 enum class Predictor : std::uint8_t {
     kNone = 0,
     kLeft = 1,      ///< left
@@ -20,7 +20,7 @@ enum class Predictor : std::uint8_t {
     kReference = 4, ///< the same place in the reference plane
 };
 
-/// How a pixel becomes channels. Values are on the wire: never renumber.
+/// Conversion of a pixel into channels. Values are on the wire: never renumber.
 enum class Layout : std::uint8_t {
     kBytes = 1,        ///< a channel per byte
     kWords16 = 2,      ///< a channel per little-endian 16-bit word
@@ -37,7 +37,7 @@ struct ByteFilter {
     bool operator==(const ByteFilter&) const = default;
 };
 
-/// The filter our encoder uses for that format, if it does not refer to another plane.
+/// The filter that the encoder uses for that format, if it does not refer to another plane.
 ByteFilter filter_for(PlaneFormat format);
 
 /// The filter with those numbers if it can be applied to `format`, or nothing.

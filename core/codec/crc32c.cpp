@@ -14,7 +14,7 @@ constexpr std::uint32_t kPolynomial = 0x82F63B78; // reflected: bit 31 is x^0
 
 using Table = std::array<std::uint32_t, 256>;
 
-/// tables[k][b]: what byte b, followed by k zero bytes, adds to the CRC.
+/// tables[k][b]: contribution of byte b, followed by k zero bytes, to the CRC.
 constexpr std::array<Table, 8> make_tables() {
     std::array<Table, 8> tables{};
     for (std::uint32_t byte = 0; byte < 256; ++byte) {
@@ -55,7 +55,7 @@ constexpr std::uint32_t multiply(std::uint32_t a, std::uint32_t b) {
     return product;
 }
 
-/// powers[k] = x^(8 · 2^k): what 2^k zero bytes do to a CRC.
+/// powers[k] = x^(8 · 2^k): factor by which 2^k zero bytes multiply a CRC.
 constexpr std::array<std::uint32_t, 64> make_powers() {
     std::array<std::uint32_t, 64> powers{};
     powers[0] = 0x80000000U >> 8;

@@ -8,7 +8,7 @@
 
 namespace fieldcast::codec {
 
-/// A codec and how good it shall be.
+/// A codec and its quality.
 struct Encoding {
     Codec codec = Codec::kZstdFiltered;
     std::uint8_t quality = 0; ///< of lossy codecs 1 (smallest) to kMaxQuality; 0 of others

@@ -58,11 +58,11 @@ void set_sizes(SEncParamExt& options, const VideoPicture& picture, std::uint8_t 
     layer.sSliceArgument.uiSliceMode = SM_SINGLE_SLICE;
 }
 
-/// One quantiser for the whole picture, nothing adaptive, one thread: same picture, same bytes.
+/// Uses one quantiser for the whole picture, no adaptation and one thread, so that equal pictures become equal bytes.
 Encoder make_encoder(const VideoPicture& picture, std::uint8_t quality) {
     ISVCEncoder* made = nullptr;
     if (WelsCreateSVCEncoder(&made) != 0) {
-        throw std::runtime_error("OpenH264 makes no encoder");
+        throw std::runtime_error("OpenH264 cannot create an encoder");
     }
     SEncParamExt options;
     made->GetDefaultParams(&options);
@@ -81,7 +81,7 @@ Encoder make_encoder(const VideoPicture& picture, std::uint8_t quality) {
     made->SetOption(ENCODER_OPTION_TRACE_LEVEL, &quiet);
     if (made->InitializeExt(&options) != 0) {
         WelsDestroySVCEncoder(made);
-        throw std::runtime_error("OpenH264 encodes no pictures of " + std::to_string(picture.width_px) + "x" +
+        throw std::runtime_error("OpenH264 cannot encode pictures of " + std::to_string(picture.width_px) + "x" +
                                  std::to_string(picture.height_px));
     }
     return Encoder(made);
@@ -117,16 +117,16 @@ Bytes encode(ISVCEncoder& encoder, VideoPicture& picture) {
 Decoder make_decoder() {
     ISVCDecoder* made = nullptr;
     if (WelsCreateDecoder(&made) != 0) {
-        throw std::runtime_error("OpenH264 makes no decoder");
+        throw std::runtime_error("OpenH264 cannot create a decoder");
     }
     Decoder decoder(made);
     int quiet = WELS_LOG_QUIET;
     decoder->SetOption(DECODER_OPTION_TRACE_LEVEL, &quiet);
     SDecodingParam options{};
     options.sVideoProperty.eVideoBsType = VIDEO_BITSTREAM_AVC;
-    options.eEcActiveIdc = ERROR_CON_DISABLE; // what is damaged is an error, not a guess
+    options.eEcActiveIdc = ERROR_CON_DISABLE; // damage is an error and is never concealed
     if (decoder->Initialize(&options) != 0) {
-        throw std::runtime_error("OpenH264's decoder does not start");
+        throw std::runtime_error("OpenH264 cannot initialise its decoder");
     }
     return decoder;
 }
@@ -139,8 +139,7 @@ struct Output {
     bool is_picture() const { return facts.iBufferStatus == 1; }
 };
 
-/// Nothing if the picture is damaged. The decoder keeps a picture back in case an earlier one follows; flushing gets
-/// it.
+/// Empty if the picture is damaged. The decoder keeps a picture back in case an earlier one follows, so it is flushed.
 std::optional<Output> decode(ISVCDecoder& decoder, std::span<const std::byte> stream) {
     Output output;
     const auto* const bytes = reinterpret_cast<const unsigned char*>(stream.data());

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxUnits = 16; ///< ours have 3, or 1
 
 using Bytes = std::span<const std::byte>;
 
-/// Reads a unit's bits, without the bytes that keep start codes out. Behind the end there are zeros, and `is_over`.
+/// Reads the bits of a unit without its emulation prevention bytes. After the end it returns zeros and sets `is_over`.
 class BitReader {
 public:
     explicit BitReader(Bytes unit) : unit_(unit) {}
@@ -72,13 +72,13 @@ private:
 
     Bytes unit_;
     std::size_t at_ = 0;
-    unsigned zeros_ = 0; ///< bytes before the next one
+    unsigned zeros_ = 0; ///< consecutive zero bytes before the next byte
     std::uint32_t current_ = 0;
-    unsigned left_ = 0; ///< bits of `current_`
+    unsigned left_ = 0; ///< unread bits of `current_`
     bool is_over_ = false;
 };
 
-/// Where the next start code (00 00 01) begins; the end if there is none.
+/// Position of the next start code (00 00 01); the end if there is none.
 std::size_t find_start(Bytes stream, std::size_t from) {
     for (std::size_t at = from; at + 3 <= stream.size(); ++at) {
         if (stream[at] == std::byte{0} && stream[at + 1] == std::byte{0} && stream[at + 2] == std::byte{1}) {
@@ -110,14 +110,14 @@ std::optional<std::vector<Bytes>> units_of(Bytes stream) {
     return units.empty() ? std::nullopt : std::optional(units);
 }
 
-/// What only high profiles say; false if it is not 4:2:0 with 8 bits and without matrices.
+/// Reads the fields of high profiles; false unless they say 4:2:0, 8 bits, and no scaling matrices.
 bool is_usual_high(BitReader& bits) {
     const bool is_420 = bits.number() == 1;
     const bool is_8_bit = bits.number() == 0 && bits.number() == 0;
     return is_420 && is_8_bit && !bits.flag() && !bits.flag();
 }
 
-/// Types 0 and 2 of the picture order count; type 1 has a list that nobody needs.
+/// Reads the picture order count of types 0 and 2. False for type 1, whose list no encoder needs.
 bool is_usual_order(BitReader& bits) {
     const std::uint32_t type = bits.number();
     if (type == 0) {

@@ -103,7 +103,7 @@ bool compress(Compressor& c, const std::byte* rgb, RgbSize size, JpegQuality qua
     return true;
 }
 
-/// Why the file whose header was read is not what we decode; null: it is.
+/// Reason why a file with this header is refused; null if it is accepted.
 const char* problem_of(jpeg_decompress_struct& info, RgbSize size) {
     if (info.image_width != size.width_px || info.image_height != size.row_count) {
         return "another size than the strip";

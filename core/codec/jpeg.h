@@ -9,7 +9,7 @@
 #include <vector>
 
 // Baseline JPEG of 8-bit RGB without subsampling, by libjpeg-turbo. (Its newer interface, TurboJPEG, cannot set
-// quantisation tables: the usual ones cost a quarter more bytes at the same SSIM of path-traced views.)
+// quantisation tables. The usual tables cost a quarter more bytes at the same SSIM of path-traced views.)
 namespace fieldcast::codec {
 
 /// Rows of pixels, 3 bytes each, tightly packed.
@@ -20,7 +20,7 @@ struct RgbSize {
     std::size_t bytes() const { return std::size_t{3} * width_px * row_count; }
 };
 
-/// What the quantisation tables are made of.
+/// Parameters of the quantisation tables.
 struct JpegQuality {
     std::uint8_t quality = 75;        ///< 1 to 100, scales the tables as libjpeg does
     double step_at_quality_50 = 27.5; ///< of the mean of Y
@@ -28,7 +28,7 @@ struct JpegQuality {
     double chroma_coarseness = 4;     ///< steps of Cb and Cr, relative to those of Y
 };
 
-/// For finished views. Noise is most of what path-traced pictures hold: steps grow little with the frequency.
+/// For finished views. Path-traced pictures consist mostly of noise, so the steps grow little with the frequency.
 inline constexpr JpegQuality kViewQuality{};
 /// For light on a LightCurve. Its noise is gone; errors that grow with the frequency would blur its edges.
 inline constexpr JpegQuality kLightQuality{.step_at_quality_50 = 9, .step_growth = 0, .chroma_coarseness = 5};

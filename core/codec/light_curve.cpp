@@ -11,7 +11,7 @@ namespace fieldcast::codec {
 
 namespace {
 
-constexpr float kKneeOfDisplay = 0.05F; ///< of what is shown as white
+constexpr float kKneeOfDisplay = 0.05F; ///< as a share of the light that is shown as white
 constexpr float kSmallest = 0x1p-40F;   ///< limits of knees and tops; the smallest value of the format is 2^−20
 constexpr float kLargest = 0x1p40F;
 constexpr std::uint32_t kPixelBytes = 4;

@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <span>
 
-// Light as eight bits per channel, so that codecs for pictures take it. Part of the wire format: docs/protocol.md,
+// Light as eight bits per channel, which codecs for pictures can encode. Part of the wire format: docs/protocol.md,
 // "JPEG".
 namespace fieldcast::codec {
 
 /// Value x ≥ 0 ↔ sample round(255 · log(1 + x / knee) / log(1 + top / knee)). Far below the knee samples are
-/// proportional to the light, far above it to its logarithm: steps that are equally visible, however dark the surface
-/// is that the light falls on. Nothing depends on a tone map.
+/// proportional to the light, far above it to its logarithm. The steps are thus equally visible on dark and on bright
+/// surfaces. Nothing depends on a tone map.
 struct LightCurve {
     float knee = 1.0F; ///< in units of the values
     float top = 1.0F;  ///< value of sample 255
@@ -24,7 +24,7 @@ struct LightCurve {
 
 inline constexpr std::size_t kLightCurveBytes = 8; ///< encoded
 
-/// A curve for kR11G11B10F pixels up to their largest value. `exposure`: what multiplies them before they are shown.
+/// A curve for kR11G11B10F pixels up to their largest value. `exposure` is the factor that multiplies them for display.
 LightCurve light_curve_for(std::span<const std::byte> pixels, float exposure);
 
 std::array<std::byte, kLightCurveBytes> encode_curve(const LightCurve& curve);

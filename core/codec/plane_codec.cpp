@@ -22,7 +22,7 @@ BandSize band_size(const Plane& plane, RowBand band) {
     return {plane.width_px, band.row_count, bytes_per_pixel(plane.format)};
 }
 
-/// Those bytes of a plane, or of its reference.
+/// Bytes of the rows of `band`, of a plane or of its reference.
 template <class Bytes> auto rows_of(Bytes& bytes, const Plane& plane, RowBand band) {
     const std::size_t row_bytes = std::size_t{plane.width_px} * bytes_per_pixel(plane.format);
     return std::span(bytes).subspan(band.first_row * row_bytes, band.row_count * row_bytes);
@@ -42,7 +42,7 @@ struct Rows {
     BandSize size;
     std::span<const std::byte> pixels;
     std::span<const std::byte> reference;
-    std::span<const std::byte> base{}; ///< of the base view: its pixels, or to decode, its H.264; empty: none
+    std::span<const std::byte> base{}; ///< of the base view: its pixels to encode, its H.264 to decode; empty: none
 };
 
 /// The filter that needs fewer bits.
@@ -54,7 +54,7 @@ ByteFilter choose_filter(PlaneFormat format, const Rows& rows) {
     ByteFilter temporal = spatial;
     temporal.predictor = Predictor::kReference;
     ByteFilter compared = spatial;
-    if (spatial.predictor == Predictor::kNone) { // zstd finds what repeats: that costs no bits
+    if (spatial.predictor == Predictor::kNone) { // zstd finds repetitions, which then cost no bits
         compared.predictor = Predictor::kLeft;
     }
     const bool is_temporal_cheaper = filter_cost(temporal, rows.size, rows.pixels, rows.reference) <
@@ -66,7 +66,7 @@ RgbSize rgb_size(BandSize size) {
     return {size.width_px, size.row_count};
 }
 
-/// Samples of a picture, where pixels are light; kept per thread.
+/// Buffer for the picture samples of light; kept per thread.
 std::span<std::byte> sample_scratch(BandSize size) {
     thread_local std::vector<std::byte> samples;
     samples.resize(rgb_size(size).bytes());
@@ -110,7 +110,7 @@ bool append_h264(const Rows& rows, std::uint8_t quality, std::vector<std::byte>&
     return true;
 }
 
-/// The body of the strip that `header`'s is predicted from; empty if it stands alone.
+/// Body of the strip that predicts the strip of `header`; empty if that one stands alone.
 Decoded<std::span<const std::byte>> base_body(const StripHeader& header, std::span<const std::byte> base) {
     if (!header.is_predicted) {
         return std::span<const std::byte>();
@@ -152,7 +152,7 @@ bool append_filtered(const Rows& rows, const StripOptions& options, StripHeader&
     return is_smaller;
 }
 
-/// Says in `header` what the strip is. False, with `strip` unchanged, if the codec's body is not smaller than the pixels.
+/// Writes the strip's coding to `header`. False, with `strip` unchanged, if the body is not smaller than the pixels.
 bool append_encoded(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
     switch (options.encoding.codec) {
     case Codec::kRaw:
@@ -171,7 +171,7 @@ bool append_encoded(const Rows& rows, const StripOptions& options, StripHeader& 
     return false;
 }
 
-/// Appends the body to `strip`, which consists of an unwritten header, and says in `header` what it is.
+/// Appends the body to `strip`, which consists of an unwritten header, and writes the strip's coding to `header`.
 void append_body(const Rows& rows, const StripOptions& options, StripHeader& header, std::vector<std::byte>& strip) {
     if (!rows.reference.empty() && std::ranges::equal(rows.pixels, rows.reference)) {
         header.coding = StripCoding::kRepeat;
@@ -275,7 +275,7 @@ Decoded<void> decode_strip(std::span<const std::byte> strip, RowBand band, const
         return decode_error("strip: " + std::string(word_of(*codec)) + " in a plane of another codec");
     }
     if (header->needs_reference() && reference == nullptr) {
-        return decode_error("strip: refers to another frame, its frame does not");
+        return decode_error("strip: refers to another frame, but its frame has no reference");
     }
     Rows rows{band_size(plane, band), {}, {}};
     if (reference != nullptr) {

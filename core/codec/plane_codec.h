@@ -31,7 +31,7 @@ struct StripOptions {
     /// For kH264: the plane of the base view, of the same format and size, whose strip of the same rows stands alone;
     /// null: this strip stands alone.
     const Plane* base = nullptr;
-    float exposure = 1.0F; ///< of the frame: what multiplies light before it is shown; lossy codecs spend bits by it
+    float exposure = 1.0F; ///< of the frame: multiplies light for display; lossy codecs distribute bits by it
     std::optional<ByteFilter> filter{}; ///< for tests and benchmarks; otherwise the cheaper one
 };
 
@@ -46,7 +46,7 @@ bool needs_reference(std::span<const std::byte> strip);
 /// Whether others may be predicted from a strip that we encoded: it is H.264 and stands alone.
 bool can_be_base(std::span<const std::byte> strip);
 
-/// What a receiver knows about the strips of a plane.
+/// Properties of a plane's strips that a receiver knows in advance.
 struct Announced {
     Codec codec = Codec::kZstdFiltered; ///< strips may be of this kind, or lossless
     const Plane* reference = nullptr;       ///< of the same format and size; null: strips that need one are refused

@@ -13,7 +13,7 @@
 
 namespace fieldcast::codec {
 
-/// What the bytes of one strip are. Values are on the wire: never renumber.
+/// Content of the bytes of one strip. Values are on the wire: never renumber.
 enum class StripCoding : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< byte planes of prediction errors in a zstd frame
@@ -22,7 +22,7 @@ enum class StripCoding : std::uint8_t {
     kRepeat = 5,       ///< no bytes: the pixels of the reference
 };
 
-/// The codec that makes such strips; nothing: every codec may.
+/// The codec that makes such strips; empty if every codec may.
 std::optional<Codec> codec_of(StripCoding coding);
 
 /// A band of rows of a plane.

@@ -57,7 +57,7 @@ std::array<std::uint8_t, 2> chroma_of(const Rgb& sum) {
     return {clamped(128 + ((blue + kHalf) >> kBits)), clamped(128 + ((red + kHalf) >> kBits))};
 }
 
-/// Four rows of weights 9, 3, 3, 1 over 16: a pixel lies a quarter of a sample from the nearest.
+/// Bilinear, with weights 9, 3, 3 and 1 over 16: a pixel lies a quarter of a sample from the nearest one.
 int interpolated(VideoChannel channel, std::uint32_t last_x, std::uint32_t last_y, std::uint32_t x, std::uint32_t y) {
     const auto other = [](std::uint32_t at, std::uint32_t last) {
         const std::uint32_t near = at / 2;

@@ -11,7 +11,7 @@
 namespace fieldcast::codec {
 
 /// 8-bit Y'CbCr of Rec. 709 in video range (Y' 16 to 235); Cb and Cr have one sample per 2×2 pixels, in their middle.
-/// Sides are even and at least 16: the last row and column are repeated as often as that takes.
+/// Sides are even and at least 16: the last row and column are repeated as often as necessary.
 struct VideoPicture {
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
@@ -25,7 +25,7 @@ std::uint32_t video_side(std::uint32_t side_px);
 
 VideoPicture video_from_rgb(std::span<const std::byte> rgb, RgbSize size);
 
-/// One channel of a picture that somebody else owns.
+/// One channel of a picture that another object owns.
 struct VideoChannel {
     const std::uint8_t* samples = nullptr;
     std::size_t stride = 0;

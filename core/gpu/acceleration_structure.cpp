@@ -7,13 +7,14 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace fieldcast::gpu {
 namespace {
 
 constexpr std::uint32_t kMaxCustomIndex = (1U << 24U) - 1;
 
-/// One geometry and the build info that points to it. Not copyable.
+/// One geometry and its build info. Not copyable: the info points to the geometry.
 struct Build {
     VkAccelerationStructureGeometryKHR geometry{};
     VkAccelerationStructureBuildGeometryInfoKHR info{};
@@ -59,7 +60,7 @@ std::uint64_t address_of(const Device& device, VkAccelerationStructureKHR struct
     return device.state().acceleration.address(device.handle(), &info);
 }
 
-/// Scratch memory is larger than needed by the alignment of its start.
+/// Scratch memory of `size_bytes`, and as much more as aligning its start may take.
 Buffer make_scratch(const Device& device, std::uint64_t size_bytes) {
     return Buffer(device, size_bytes + device.state().scratch_alignment);
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/buffer.h"
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 
 namespace fieldcast::gpu {
 
-/// Geometry of a bottom level: positions are vec3-or-wider float32 with the given stride; indices are u32 triples.
+/// Geometry of a bottom level. A vertex starts with its position (three float32); a triangle has three u32 indices.
 struct TriangleGeometry {
     std::uint64_t vertex_address = 0;
     std::uint32_t vertex_stride_bytes = 12;
@@ -17,15 +19,16 @@ struct TriangleGeometry {
     bool is_opaque = true; ///< false: candidates are reported to the shader (alpha test)
 };
 
+/// One placement of a bottom level in a top level.
 struct TopLevelInstance {
     glm::mat4 world_from_object{1.0F};
-    std::uint32_t custom_index = 0; ///< < 2^24
+    std::uint32_t custom_index = 0; ///< less than 2^24
     std::uint64_t bottom_level_address = 0;
     bool is_opaque = true; ///< false: candidates are reported even if the geometry is opaque
     std::uint8_t mask = 0xFF;
 };
 
-/// VK_KHR_acceleration_structure, for ray queries. Only on devices with `has_ray_query`.
+/// An acceleration structure for ray queries (VK_KHR_acceleration_structure). Only on devices with `has_ray_query`.
 class AccelerationStructure {
 public:
     AccelerationStructure() = default;
@@ -33,10 +36,11 @@ public:
     AccelerationStructure(AccelerationStructure&& other) noexcept;
     AccelerationStructure& operator=(AccelerationStructure&& other) noexcept;
 
-    /// Builds (fast trace) and waits. One geometry per bottom level.
+    /// Builds a bottom level of one geometry (for fast traces) and waits. Throws VulkanError.
     static AccelerationStructure bottom_level(const Device& device, const TriangleGeometry& geometry);
-    /// Top level over `instances`; `rebuild` may be called with as many or fewer instances.
+    /// Builds a top level of `instances` and waits. Throws VulkanError.
     static AccelerationStructure top_level(const Device& device, std::span<const TopLevelInstance> instances);
+    /// Builds this top level again and waits; at most as many instances as top_level() had. Throws VulkanError.
     void rebuild(const Device& device, std::span<const TopLevelInstance> instances);
 
     std::uint64_t address() const { return address_; }

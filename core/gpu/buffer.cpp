@@ -7,19 +7,20 @@
 #include "core/gpu/run_once.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace fieldcast::gpu {
 namespace {
 
 constexpr std::uint64_t kMinBytes = 16;
-constexpr std::uint64_t kStagingBytes = 64ULL << 20U;
+constexpr std::uint64_t kStagingBytes = 16ULL << 20U; // largest staging buffer; the device keeps them
 
 constexpr VkMemoryPropertyFlags kLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
 constexpr VkMemoryPropertyFlags kShared = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 constexpr VkMemoryPropertyFlags kCached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
-/// Property flags to try, best first. Vulkan guarantees a type with the last entry of each list.
+/// Memory properties to try, best first. Vulkan guarantees that a memory type has the last entry of each list.
 std::vector<VkMemoryPropertyFlags> wanted_properties(const Device& device, Memory memory) {
     switch (memory) {
     case Memory::kUpload:
@@ -56,30 +57,47 @@ VkBufferUsageFlags usage_flags(const Device& device) {
     return usage;
 }
 
-/// Calls `copy(staging, offset, size)` for pieces of at most kStagingBytes.
+/// A staging buffer that waits for reuse.
+struct KeptBuffer : Kept {
+    explicit KeptBuffer(Buffer kept) : buffer(std::move(kept)) {}
+    Buffer buffer;
+};
+
+IdleObjects<std::unique_ptr<Kept>>& idle_buffers(const Device& device, Memory memory) {
+    const DeviceState& state = device.state();
+    return memory == Memory::kUpload ? state.idle_upload_buffers : state.idle_readback_buffers;
+}
+
+/// An idle staging buffer of the device; empty if there is none.
+Buffer take_idle(const Device& device, Memory memory) {
+    auto idle = idle_buffers(device, memory).lock();
+    if (idle->empty()) {
+        return {};
+    }
+    Buffer taken = std::move(static_cast<KeptBuffer&>(*idle->back()).buffer);
+    idle->pop_back();
+    return taken;
+}
+
+/// Calls `copy(staging, offset, size)` for pieces of at most kStagingBytes. `copy` must have finished with the staging
+/// buffer when it returns. After an exception the staging buffer is freed, not kept.
 template <class Copy> void in_pieces(const Device& device, Memory memory, std::uint64_t size_bytes, Copy copy) {
-    const Buffer staging(device, std::min(size_bytes, kStagingBytes), memory);
+    Buffer staging = take_idle(device, memory);
+    make_room(device, staging, std::min(size_bytes, kStagingBytes), memory);
     for (std::uint64_t done = 0; done < size_bytes; done += kStagingBytes) {
         copy(staging, done, std::min(size_bytes - done, kStagingBytes));
     }
+    auto kept = std::make_unique<KeptBuffer>(std::move(staging));
+    idle_buffers(device, memory).lock()->push_back(std::move(kept));
+}
+
+/// Whether buffers of `memory` are mapped where the memory type allows it.
+bool may_be_mapped(const Device& device, Memory memory) {
+    return memory != Memory::kDevice || device.state().map_device_memory;
 }
 
 void copy_now(const Device& device, VkBuffer from, VkBuffer to, const VkBufferCopy& region) {
-    run_once(device, [&](VkCommandBuffer commands) {
-        vkCmdCopyBuffer(commands, from, to, 1, &region);
-        // The fence alone does not make device writes visible to the host.
-        VkMemoryBarrier2 barrier{};
-        barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-        barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-        barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-        barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
-        VkDependencyInfo dependency{};
-        dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-        dependency.memoryBarrierCount = 1;
-        dependency.pMemoryBarriers = &barrier;
-        vkCmdPipelineBarrier2(commands, &dependency);
-    });
+    run_once(device, [&](VkCommandBuffer commands) { vkCmdCopyBuffer(commands, from, to, 1, &region); });
 }
 
 } // namespace
@@ -109,7 +127,7 @@ Buffer::Buffer(const Device& device, std::uint64_t size_bytes, Memory memory) : 
     check(vkBindBufferMemory(device_, buffer_, memory_, 0), "vkBindBufferMemory");
 
     const auto properties = device.state().memory.memoryTypes[allocate.memoryTypeIndex].propertyFlags;
-    if ((properties & kShared) == kShared) {
+    if (may_be_mapped(device, memory) && (properties & kShared) == kShared) {
         void* pointer = nullptr;
         check(vkMapMemory(device_, memory_, 0, VK_WHOLE_SIZE, 0, &pointer), "vkMapMemory");
         mapped_ = static_cast<std::byte*>(pointer);
@@ -150,6 +168,13 @@ void Buffer::release() noexcept {
     }
 }
 
+void make_room(const Device& device, Buffer& buffer, std::uint64_t size_bytes, Memory memory) {
+    if (buffer.size_bytes() < size_bytes) {
+        buffer = {}; // frees the old memory before the new is allocated
+        buffer = Buffer(device, size_bytes, memory);
+    }
+}
+
 Buffer make_zero_buffer(const Device& device, std::uint64_t size_bytes) {
     Buffer buffer(device, size_bytes);
     run_once(device,
@@ -181,7 +206,7 @@ void read_buffer(const Device& device, const Buffer& buffer, std::span<std::byte
     if (bytes.empty()) {
         return;
     }
-    // Uncached host memory reads at a few hundred MB/s: there, a copy on the device is the faster way.
+    // The host reads uncached memory at a few hundred MB/s; a copy on the device is faster.
     if (buffer.mapped() != nullptr && buffer.is_cached()) {
         std::memcpy(bytes.data(), buffer.mapped() + offset_bytes, bytes.size());
         return;

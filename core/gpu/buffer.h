@@ -4,23 +4,27 @@
 #include "core/gpu/device.h"
 
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 namespace fieldcast::gpu {
 
+/// Kinds of memory of a buffer.
 enum class Memory {
-    kDevice,   ///< fastest for kernels; may be mappable (it is on CPU devices)
+    kDevice,   ///< fastest for kernels; may be mapped, as on CPU devices
     kUpload,   ///< written by the host, read by copies or kernels
     kReadback, ///< host-cached, written by copies
 };
 
-/// One VkBuffer with its own memory and device address; usable for storage, texel, indirect, transfer and
-/// acceleration structure input. Size is rounded up to at least 16 bytes. Contents are undefined until written.
+/// One VkBuffer with its own memory and device address, for storage, texel views, indirect dispatches, transfers,
+/// vertices, indices and acceleration structures. Its size is at least 16 bytes. Its contents are undefined until they
+/// are written.
 class Buffer {
 public:
     Buffer() = default;
+    /// Throws VulkanError if there is no memory.
     Buffer(const Device& device, std::uint64_t size_bytes, Memory memory = Memory::kDevice);
     ~Buffer();
     Buffer(Buffer&& other) noexcept;
@@ -29,8 +33,8 @@ public:
     VkBuffer handle() const { return buffer_; }
     std::uint64_t size_bytes() const { return size_bytes_; }
     std::uint64_t address() const { return address_; } ///< for push constants
-    std::byte* mapped() const { return mapped_; }      ///< null for kDevice memory that is not host visible
-    bool is_cached() const { return is_cached_; }      ///< `mapped()` may be read at full speed
+    std::byte* mapped() const { return mapped_; }      ///< null for kDevice memory that is not host-visible
+    bool is_cached() const { return is_cached_; }      ///< mapped in host-cached memory, which reads at full speed
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:
@@ -45,18 +49,24 @@ private:
     bool is_cached_ = false;
 };
 
-/// Writes host data into a buffer (any memory), through a staging copy where needed. Blocks.
+/// Makes `buffer` hold at least `size_bytes`: a smaller one is replaced, and its contents are lost. No submitted work
+/// may use it. Throws VulkanError; `buffer` is then empty.
+void make_room(const Device& device, Buffer& buffer, std::uint64_t size_bytes, Memory memory = Memory::kDevice);
+
+/// Writes host data into a buffer of any memory, through a staging buffer where needed. Blocks. Thread-safe. Throws
+/// VulkanError.
 void write_buffer(const Device& device, const Buffer& buffer, std::span<const std::byte> bytes,
                   std::uint64_t offset_bytes = 0);
 
-/// Reads back `bytes.size()` bytes from any buffer. Blocks.
+/// Reads `bytes.size()` bytes from a buffer of any memory, through a staging buffer where needed. Blocks. Thread-safe.
+/// Throws VulkanError.
 void read_buffer(const Device& device, const Buffer& buffer, std::span<std::byte> bytes,
                  std::uint64_t offset_bytes = 0);
 
-/// A device buffer of zeros. Blocks.
+/// A device buffer of zeros. Blocks. Throws VulkanError.
 Buffer make_zero_buffer(const Device& device, std::uint64_t size_bytes);
 
-/// A device buffer holding a copy of `values` (at least 16 bytes even if empty).
+/// A device buffer that holds a copy of `values` (at least 16 bytes even if empty). Blocks. Throws VulkanError.
 template <class T>
 requires std::is_trivially_copyable_v<T> Buffer make_buffer(const Device& device, std::span<const T> values) {
     Buffer buffer(device, values.size_bytes());
@@ -66,6 +76,7 @@ requires std::is_trivially_copyable_v<T> Buffer make_buffer(const Device& device
     return buffer;
 }
 
+/// Reads `count` values from `offset_bytes` on. Blocks. Throws VulkanError.
 template <class T>
 requires std::is_trivially_copyable_v<T> std::vector<T>
 read_buffer_as(const Device& device, const Buffer& buffer, std::size_t count, std::uint64_t offset_bytes = 0) {
@@ -74,11 +85,11 @@ read_buffer_as(const Device& device, const Buffer& buffer, std::size_t count, st
     return values;
 }
 
-/// Typed view of a buffer for `samplerBuffer`/`usamplerBuffer` fetches.
+/// Typed view of a buffer, for fetches of `samplerBuffer` and `usamplerBuffer`. The buffer must outlive it.
 class TexelView {
 public:
     TexelView() = default;
-    /// Throws UserError-like VulkanError if the element count exceeds the device's limit.
+    /// Throws VulkanError, which names the limit, if the view has more elements than the device allows.
     TexelView(const Device& device, const Buffer& buffer, VkFormat format, std::uint64_t offset_bytes = 0,
               std::uint64_t size_bytes = VK_WHOLE_SIZE);
     ~TexelView();

@@ -10,7 +10,7 @@
 namespace fieldcast::gpu {
 namespace {
 
-/// Feature structs of a device, chained for vkCreateDevice. Not copyable: the chain points into it.
+/// Chain of feature structs for vkCreateDevice. Not copyable: its members point to each other.
 struct FeatureChain {
     VkPhysicalDeviceFeatures2 features{};
     VkPhysicalDeviceVulkan12Features v12{};
@@ -43,7 +43,7 @@ struct FeatureChain {
     FeatureChain& operator=(const FeatureChain&) = delete;
 };
 
-void create_device(Device::State& state) {
+void create_device(DeviceState& state) {
     const FeatureChain chain(state.info.has_ray_query, state.info.has_rasteriser);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{};
@@ -71,7 +71,7 @@ template <class Function> void load(VkDevice device, Function& function, const c
     }
 }
 
-void load_acceleration_structure(Device::State& state) {
+void load_acceleration_structure(DeviceState& state) {
     auto& functions = state.acceleration;
     load(state.device, functions.create, "vkCreateAccelerationStructureKHR");
     load(state.device, functions.destroy, "vkDestroyAccelerationStructureKHR");
@@ -88,53 +88,15 @@ void load_acceleration_structure(Device::State& state) {
     state.scratch_alignment = acceleration.minAccelerationStructureScratchOffsetAlignment;
 }
 
-std::string result_text(VkResult result) {
-    switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-        return "out of host memory";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        return "out of device memory";
-    case VK_ERROR_DEVICE_LOST:
-        return "device lost";
-    case VK_ERROR_INITIALIZATION_FAILED:
-        return "initialisation failed";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-        return "too many objects (memory allocations are limited by the driver)";
-    case VK_ERROR_FORMAT_NOT_SUPPORTED:
-        return "format not supported";
-    default:
-        return "VkResult " + std::to_string(result);
-    }
-}
-
 } // namespace
 
-void check(VkResult result, const char* call) {
-    if (result < 0) {
-        throw VulkanError(std::string(call) + ": " + result_text(result));
-    }
-}
-
-Device::State::~State() {
-    if (device != VK_NULL_HANDLE) {
-        vkDestroyDevice(device, nullptr);
-    }
-    if (messenger != VK_NULL_HANDLE) {
-        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-            vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
-        destroy(instance, messenger, nullptr);
-    }
-    if (instance != VK_NULL_HANDLE) {
-        vkDestroyInstance(instance, nullptr);
-    }
-}
-
-Device::Device(const DeviceOptions& options) : state_(std::make_unique<State>()) {
+Device::Device(const DeviceOptions& options) : state_(std::make_unique<DeviceState>()) {
     create_instance(*state_, options.validation);
     const auto choice = choose_device(state_->instance, options);
     state_->physical = choice.physical;
     state_->queue_family = choice.queue_family;
     state_->info = choice.info;
+    state_->map_device_memory = options.map_device_memory;
     vkGetPhysicalDeviceMemoryProperties(state_->physical, &state_->memory);
     create_device(*state_);
     if (state_->info.has_ray_query) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/gpu/device_choice.h"
 
+#include "core/gpu/vulkan_error.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <optional>
 #include <span>
+#include <utility>
 
 namespace fieldcast::gpu {
 namespace {
@@ -35,7 +39,7 @@ std::uint64_t largest_heap(VkPhysicalDevice physical) {
     return bytes;
 }
 
-/// Graphics, too, because mip maps are made with vkCmdBlitImage.
+/// First queue family for compute and graphics; vkCmdBlitImage, which makes mip maps, needs graphics.
 std::optional<std::uint32_t> find_queue_family(VkPhysicalDevice physical) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
@@ -78,7 +82,7 @@ bool supports_ray_query(VkPhysicalDevice physical) {
     return ray_query.rayQuery == VK_TRUE && acceleration.accelerationStructure == VK_TRUE;
 }
 
-/// Names of required features the (Vulkan 1.3) device lacks, separated by commas.
+/// Names of the required features that a Vulkan 1.3 device lacks, separated by commas.
 std::string missing_features(VkPhysicalDevice physical) {
     VkPhysicalDeviceVulkan13Features v13{};
     v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
@@ -112,7 +116,7 @@ std::string version_text(std::uint32_t version) {
     return text;
 }
 
-/// Empty if the device can be used.
+/// Reason why the device is not used; empty if it can be used.
 std::string reason_against(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties,
                            const DeviceOptions& options) {
     if (lower(properties.deviceName).find(lower(options.name_contains)) == std::string::npos) {
@@ -140,8 +144,8 @@ int preference(VkPhysicalDeviceType type) {
     }
 }
 
-/// Vulkan asks neither for depth buffers of floats nor for pipelines that write some of a target's images; almost every
-/// device has them.
+/// Vulkan does not require 32-bit float depth buffers, nor pipelines that write only some of a target's images
+/// (independentBlend). Almost every device has both.
 bool supports_rasteriser(VkPhysicalDevice physical) {
     VkPhysicalDeviceFeatures features{};
     vkGetPhysicalDeviceFeatures(physical, &features);
@@ -181,7 +185,6 @@ DeviceInfo describe(VkPhysicalDevice physical, std::uint32_t queue_family) {
     info.memory_bytes = largest_heap(physical);
     info.max_image_side = properties.limits.maxImageDimension2D;
     info.max_image_layers = properties.limits.maxImageArrayLayers;
-    info.subgroup_size = v11.subgroupSize;
     info.limits = properties.limits;
     return info;
 }

@@ -6,7 +6,7 @@
 
 namespace fieldcast::gpu {
 
-/// Bytes of one texel. Fails an assertion for formats Fieldcast does not use.
+/// Bytes of one texel. Fails an assertion for formats that Fieldcast does not use.
 std::uint32_t texel_bytes(VkFormat format);
 
 } // namespace fieldcast::gpu

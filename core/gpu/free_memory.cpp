@@ -16,13 +16,14 @@ namespace {
 
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 
-/// The number that a file begins with; unknown if there is none, such as "max".
+/// The number at the start of a file; kUnknown if the file does not start with a number, such as "max".
 std::uint64_t number_in(const std::filesystem::path& file) {
     std::ifstream stream(file);
     std::uint64_t number = 0;
     return stream >> number ? number : kUnknown;
 }
 
+/// Available main memory, bytes; kUnknown if Linux does not report it.
 std::uint64_t free_in_machine() {
     std::ifstream lines("/proc/meminfo"); // "MemAvailable:   12345 kB"
     std::string word;
@@ -35,7 +36,7 @@ std::uint64_t free_in_machine() {
     return kUnknown;
 }
 
-/// Left to us by the nearest control group (version 2).
+/// Bytes that the control group (version 2) of this process has left; kUnknown without a limit.
 std::uint64_t free_in_group() {
     std::ifstream lines("/proc/self/cgroup"); // "0::/system.slice/fieldcast-server.service"
     std::string line;
@@ -60,7 +61,7 @@ bool reports_budget(VkPhysicalDevice physical) {
     });
 }
 
-std::uint64_t free_on_device(const Device::State& state) {
+std::uint64_t free_on_device(const DeviceState& state) {
     VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
     budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
     VkPhysicalDeviceMemoryProperties2 memory{};

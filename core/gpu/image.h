@@ -3,10 +3,10 @@
 
 #include "core/gpu/device.h"
 
-// What all images need; for core/gpu.
+// Images and their memory; for core/gpu.
 namespace fieldcast::gpu {
 
-/// A 2D array image without multisampling, tiled as the device likes best.
+/// A 2D array image without multisampling, in the optimal tiling of the device.
 struct ImageDesc {
     VkFormat format = VK_FORMAT_UNDEFINED;
     std::uint32_t width_px = 0;
@@ -16,13 +16,14 @@ struct ImageDesc {
     VkImageUsageFlags usage = 0;
 };
 
-/// Throws VulkanError where the image is larger than the device allows.
+/// The caller destroys the image. Throws VulkanError if the image is larger than the device allows.
 VkImage create_image(const Device& device, const ImageDesc& desc);
 
-/// Allocates memory of the device's own, if the image can have that, and binds it. Throws VulkanError.
+/// Allocates memory for the image and binds it; device-local memory where the image may have it. The caller frees the
+/// memory. Throws VulkanError.
 VkDeviceMemory allocate_and_bind(const Device& device, VkImage image);
 
-/// Mip levels of all layers of an image, and what happens to them.
+/// Change of layout of some mip levels of an image, in all its layers.
 struct ImageTransition {
     VkImageLayout from = VK_IMAGE_LAYOUT_UNDEFINED;
     VkImageLayout to = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -31,7 +32,7 @@ struct ImageTransition {
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
 };
 
-/// A full barrier: what used the image before is over when what comes after begins.
+/// Records a layout change and a full barrier: later commands start when all earlier ones have finished.
 void transition(VkCommandBuffer commands, VkImage image, const ImageTransition& change);
 
 } // namespace fieldcast::gpu

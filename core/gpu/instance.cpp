@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/log.h"
+#include "core/gpu/vulkan_error.h"
 
 #include <algorithm>
 #include <cstring>
@@ -23,7 +24,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     } else {
         log::warn("Vulkan validation", {{"message", text}});
     }
-    auto messages = static_cast<Device::State*>(user)->validation.lock();
+    auto messages = static_cast<DeviceState*>(user)->validation.lock();
     ++messages->count;
     if (messages->texts.size() < kMaxKeptMessages) {
         messages->texts.push_back(text);
@@ -31,12 +32,12 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
-VkDebugUtilsMessengerCreateInfoEXT messenger_info(Device::State& state) {
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(DeviceState& state) {
     VkDebugUtilsMessengerCreateInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // General messages come from the loader (unusable drivers, other layers) and say nothing about our calls.
+    // General messages come from the loader (unusable drivers, other layers), not from our calls.
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
     info.pfnUserCallback = on_message;
     info.pUserData = &state;
@@ -53,7 +54,7 @@ bool has_layer(const char* name) {
 
 } // namespace
 
-void create_instance(Device::State& state, bool validation) {
+void create_instance(DeviceState& state, bool validation) {
     if (validation && !has_layer(kValidationLayer)) {
         throw UserError("Vulkan validation was requested, but VK_LAYER_KHRONOS_validation is not installed "
                         "(Debian package vulkan-validationlayers)");

@@ -5,7 +5,8 @@
 
 namespace fieldcast::gpu {
 
-/// Creates `state.instance`, with the validation layer and its messenger if asked for.
-void create_instance(Device::State& state, bool validation);
+/// Creates `state.instance`; with `validation` also the validation layer and its messenger, which writes to
+/// `state.validation`. Throws UserError without the layer, NoDeviceError without a driver, VulkanError.
+void create_instance(DeviceState& state, bool validation);
 
 } // namespace fieldcast::gpu

@@ -6,6 +6,7 @@
 #include <utility>
 
 namespace fieldcast::gpu {
+
 Kernel::Kernel(const Device& device, const KernelCode& code, const KernelLayout& layout,
                std::span<const Specialisation> specialisations)
     : Kernel() {

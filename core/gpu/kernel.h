@@ -2,32 +2,17 @@
 #pragma once
 
 #include "core/gpu/bindings.h"
+#include "core/gpu/kernel_code.h"
 
 #include <initializer_list>
 
 namespace fieldcast::gpu {
 
-/// A compiled kernel, embedded in the binary.
-struct KernelCode {
-    const char* name = "";
-    std::span<const std::uint32_t> spirv;
-};
-
-/// Value of a specialisation constant (bool: 0 or 1; float: its bits through `std::bit_cast`).
-struct Specialisation {
-    std::uint32_t id = 0;
-    std::uint32_t value = 0;
-};
-
-struct KernelLayout {
-    std::vector<const BindingLayout*> sets; ///< set 0, 1, …
-    std::uint32_t push_bytes = 0;           ///< ≤ 128
-};
-
-/// A compute pipeline.
+/// A compute pipeline made from a kernel.
 class Kernel {
 public:
     Kernel() = default;
+    /// `layout.sets` are needed only during the call. Throws VulkanError, which names the kernel.
     Kernel(const Device& device, const KernelCode& code, const KernelLayout& layout,
            std::span<const Specialisation> specialisations = {});
     ~Kernel();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-/// The parts of a graphics pipeline that are the same for all. Not copyable: they point into each other.
+/// Fixed-function state of a graphics pipeline. Not copyable: its members point to each other.
 struct FixedFunctions {
     VkVertexInputBindingDescription binding{};
     std::vector<VkVertexInputAttributeDescription> members;
@@ -125,7 +125,7 @@ RasterPipeline::~RasterPipeline() {
     vkDestroyPipelineLayout(device_, layout_, nullptr);
 }
 
-RasterPass::RasterPass(Recorder& recorder, const RasterTarget& target, std::uint32_t layer)
+RasterPass::RasterPass(CommandRecorder& recorder, const RasterTarget& target, std::uint32_t layer)
     : commands_(recorder.commands()) {
     const RasterTargetDesc& desc = target.desc();
     std::vector<VkRenderingAttachmentInfo> colours(desc.colours.size());

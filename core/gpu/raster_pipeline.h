@@ -11,25 +11,27 @@ struct RasterCode {
     KernelCode fragment;
 };
 
-/// A member of a vertex, at the location of its index.
+/// One vertex attribute; its location is its index in RasterPipelineDesc::vertex.
 struct VertexMember {
     VkFormat format = VK_FORMAT_UNDEFINED;
     std::uint32_t offset_bytes = 0;
 };
 
+/// Inputs and outputs of a graphics pipeline.
 struct RasterPipelineDesc {
-    KernelLayout layout; ///< for both shaders
+    KernelLayout layout; ///< of both shaders
     std::vector<VertexMember> vertex;
     std::uint32_t vertex_bytes = 0;
-    std::vector<VkFormat> colours; ///< of the targets
-    std::uint32_t written = ~0U;   ///< bit i: image i is written; the others keep what they hold
+    std::vector<VkFormat> colours; ///< formats of the target's images
+    std::uint32_t written = ~0U;   ///< bit i: image i is written; the others stay unchanged
     bool writes_depth = true;
 };
 
-/// A graphics pipeline for lists of triangles, seen from both sides; what is nearer (of greater depth) stays. Flat
-/// inputs of fragments are those of a triangle's first vertex.
+/// A graphics pipeline for triangle lists without culling. The fragment of greater depth, which is nearer, is kept.
+/// Flat fragment inputs come from the first vertex of a triangle.
 class RasterPipeline {
 public:
+    /// Throws VulkanError, which names the fragment shader.
     RasterPipeline(const Device& device, const RasterCode& code, const RasterPipelineDesc& desc,
                    std::span<const Specialisation> specialisations = {});
     ~RasterPipeline();
@@ -47,19 +49,23 @@ private:
     std::uint32_t push_bytes_;
 };
 
-/// Draws into one layer of a target, from construction, which clears it (colours to all ones), until destruction.
+/// Draws into one layer of a target. The constructor begins rendering and clears the layer (colours to all ones, depth
+/// to 0); the destructor ends rendering.
 class RasterPass {
 public:
-    RasterPass(Recorder& recorder, const RasterTarget& target, std::uint32_t layer);
+    RasterPass(CommandRecorder& recorder, const RasterTarget& target, std::uint32_t layer);
     ~RasterPass();
     RasterPass(const RasterPass&) = delete;
     RasterPass& operator=(const RasterPass&) = delete;
 
+    /// Binds a pipeline and its descriptor sets 0, 1, …
     void use(const RasterPipeline& pipeline, std::initializer_list<const BindingSet*> sets);
-    void use_triangles(const Buffer& vertices, const Buffer& indices); ///< indices are u32
+    /// Binds vertices, and indices of 32 bits.
+    void use_triangles(const Buffer& vertices, const Buffer& indices);
 
-    /// For the pipeline in use; exactly its push_bytes.
+    /// Sets the push constants of the pipeline in use; exactly its push_bytes.
     template <class Push> void push(const Push& values) { push_raw(std::as_bytes(std::span(&values, 1))); }
+    /// Draws the triangles of `index_count` indices.
     void draw(std::uint32_t first_index, std::uint32_t index_count);
 
 private:

@@ -25,7 +25,7 @@ struct RasterTarget::Image {
 
 struct RasterTarget::Images {
     std::vector<Image> colours;
-    std::vector<Image> depth; ///< one
+    std::vector<Image> depth; ///< one image
 };
 
 namespace {
@@ -88,7 +88,7 @@ RasterTarget::~RasterTarget() = default;
 RasterTarget::RasterTarget(RasterTarget&& other) noexcept = default;
 RasterTarget& RasterTarget::operator=(RasterTarget&& other) noexcept = default;
 
-void RasterTarget::begin(Recorder& recorder) const {
+void RasterTarget::begin(CommandRecorder& recorder) const {
     for (std::size_t i = 0; i < desc_.colours.size(); ++i) {
         transition(recorder.commands(), images_->colours[i].image, {.to = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL});
     }
@@ -96,8 +96,8 @@ void RasterTarget::begin(Recorder& recorder) const {
                {.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, .aspect = VK_IMAGE_ASPECT_DEPTH_BIT});
 }
 
-void RasterTarget::copy_to(Recorder& recorder, std::size_t colour, const Buffer& buffer, std::uint64_t offset_bytes,
-                           std::uint64_t layer_bytes, std::uint32_t layer_count) const {
+void RasterTarget::copy_to(CommandRecorder& recorder, std::size_t colour, const Buffer& buffer,
+                           std::uint64_t offset_bytes, std::uint64_t layer_bytes, std::uint32_t layer_count) const {
     const VkImage image = images_->colours.at(colour).image;
     transition(recorder.commands(), image,
                {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL});

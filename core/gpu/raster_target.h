@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 
 namespace fieldcast::gpu {
 
+/// Size and formats of a target.
 struct RasterTargetDesc {
     std::uint32_t width_px = 1;
     std::uint32_t height_px = 1;
-    std::uint32_t layers = 1;      ///< equal-sized pictures, drawn one after the other
-    std::vector<VkFormat> colours; ///< of unsigned integers; one image for each
+    std::uint32_t layers = 1;      ///< images of equal size, drawn one after the other
+    std::vector<VkFormat> colours; ///< unsigned integer formats; one image for each
 };
 
-/// Images that triangles are drawn into (RasterPass), with a depth buffer: 0 is far, greater is nearer.
+/// Render target of a RasterPass: colour images and a depth buffer, in which 0 is far and greater values are nearer.
 ///
 ///   target.begin(recorder);
 ///   { RasterPass pass(recorder, target, layer); pass.use(…); pass.draw(…); }  // for each layer
@@ -30,13 +31,13 @@ public:
 
     const RasterTargetDesc& desc() const { return desc_; }
 
-    /// Before the first pass: what was drawn before is lost.
-    void begin(Recorder& recorder) const;
+    /// Must be recorded before the first pass. Earlier contents are lost.
+    void begin(CommandRecorder& recorder) const;
 
-    /// After the last pass: rows of the first `layer_count` layers of image `colour`, tightly packed, each layer
-    /// `layer_bytes` after the one before. May be called for one image after another; then nothing more is drawn before
-    /// begin(). Visible to later commands after recorder.barrier().
-    void copy_to(Recorder& recorder, std::size_t colour, const Buffer& buffer, std::uint64_t offset_bytes,
+    /// Copies the first `layer_count` layers of image `colour` to `buffer` after the last pass. Rows are tightly
+    /// packed, and layers start `layer_bytes` apart. Each image may be copied once; the next pass needs begin() again.
+    /// The copy is visible to later commands after recorder.barrier().
+    void copy_to(CommandRecorder& recorder, std::size_t colour, const Buffer& buffer, std::uint64_t offset_bytes,
                  std::uint64_t layer_bytes, std::uint32_t layer_count) const;
 
     VkImageView colour_view(std::size_t colour, std::uint32_t layer) const;

@@ -7,7 +7,8 @@
 
 namespace fieldcast::gpu {
 
-/// Records commands into a temporary command buffer, submits them and waits.
+/// Records commands into a command buffer that the device keeps for reuse, submits them and waits. Later
+/// submissions and the host see all that they wrote. Thread-safe. Throws VulkanError.
 void run_once(const Device& device, const std::function<void(VkCommandBuffer)>& record);
 
 } // namespace fieldcast::gpu

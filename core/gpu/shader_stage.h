@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/kernel.h"
+#include "core/gpu/bindings.h"
+#include "core/gpu/kernel_code.h"
 
-// What compute and graphics pipelines are made of; for core/gpu.
+// Parts of compute and graphics pipelines; for core/gpu.
 namespace fieldcast::gpu {
 
-/// Sets and push constants of the shaders of `stages`.
+/// Creates the layout of a pipeline whose shaders of `stages` share sets and push constants. The caller destroys it.
+/// Throws VulkanError.
 VkPipelineLayout create_pipeline_layout(const Device& device, const KernelLayout& layout, VkShaderStageFlags stages);
 
-/// Values of specialisation constants as Vulkan takes them. `values` must outlive it. Not copyable: it points into
+/// Values of specialisation constants in the form of Vulkan. `values` must outlive it. Not copyable: it points into
 /// itself.
 class SpecialisationMap {
 public:
@@ -24,7 +26,7 @@ private:
     VkSpecializationInfo info_{};
 };
 
-/// Needed until its pipelines are made.
+/// A kernel loaded by the driver; may be destroyed once its pipelines exist.
 class ShaderModule {
 public:
     ShaderModule(const Device& device, const KernelCode& code);
@@ -32,7 +34,7 @@ public:
     ShaderModule(const ShaderModule&) = delete;
     ShaderModule& operator=(const ShaderModule&) = delete;
 
-    /// `values` must outlive what it returns.
+    /// Description of one stage of a pipeline. The module and `values` must outlive it.
     VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits stage, const SpecialisationMap& values) const;
 
 private:

@@ -73,7 +73,8 @@ VkOffset3D mip_corner(const TextureDesc& desc, std::uint32_t mip) {
             static_cast<std::int32_t>(std::max(desc.height_px >> mip, 1U)), 1};
 }
 
-/// Halves level by level: a linear blit of a power of two averages 2×2 texels, in linear light for sRGB formats.
+/// Makes each mip level from the level before. A linear blit to half the size averages 2×2 texels where sizes are even,
+/// in linear light for sRGB formats.
 void make_mips(VkCommandBuffer commands, VkImage image, const TextureDesc& desc) {
     for (std::uint32_t mip = 1; mip < mip_count(desc); ++mip) {
         transition(commands, image,
@@ -93,7 +94,7 @@ void make_mips(VkCommandBuffer commands, VkImage image, const TextureDesc& desc)
         {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, mip_count(desc) - 1, 1});
 }
 
-/// Layer by layer, so that staging needs the memory of one layer only.
+/// Uploads layer by layer, so that the staging buffer needs the memory of one layer only.
 void upload(const Device& device, VkImage image, const TextureDesc& desc,
             std::span<const std::span<const std::byte>> layer_bytes) {
     const Buffer staging(device, layer_bytes[0].size(), Memory::kUpload);
@@ -122,7 +123,6 @@ Texture::Texture(const Device& device, const TextureDesc& desc, std::span<const 
               "a layer is not width x height texels");
     require_format(device, desc);
     device_ = device.handle();
-    desc_ = desc;
     image_ = create_image(device, desc);
     memory_ = allocate_and_bind(device, image_);
     view_ = create_view(device_, image_, desc);
@@ -142,7 +142,6 @@ Texture& Texture::operator=(Texture&& other) noexcept {
     if (this != &other) {
         release();
         device_ = std::exchange(other.device_, VK_NULL_HANDLE);
-        desc_ = other.desc_;
         image_ = std::exchange(other.image_, VK_NULL_HANDLE);
         memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
         view_ = std::exchange(other.view_, VK_NULL_HANDLE);

@@ -54,7 +54,7 @@ void append_chunk(Bytes& to, std::string_view type, ByteSpan body) {
     append_big32(to, static_cast<std::uint32_t>(crc32_z(0, data, covered.size())));
 }
 
-/// A still PNG taken apart: whole chunks between IHDR and the pixels, and the bodies of its IDAT chunks in one.
+/// Parts of a still PNG: whole chunks between IHDR and the pixels, and the bodies of its IDAT chunks joined into one.
 struct StillImage {
     Bytes header;
     Bytes between;
@@ -89,7 +89,7 @@ void append_frame_control(Bytes& to, std::uint32_t sequence, const Plane& frame,
     append_big32(body, 0); // y
     append_big16(body, delay_ms);
     append_big16(body, 1000); // delay is in 1/1000 s
-    append_big16(body, 0);    // keep the frame, replace what was there
+    append_big16(body, 0);    // keep the frame, replace the content before it
     append_chunk(to, "fcTL", body);
 }
 

@@ -11,12 +11,12 @@
 
 namespace fieldcast::image {
 
-/// Lossless animation that every browser plays in an <img>, looping for ever. `frames` are kRgb8 planes of one size, in
-/// the order shown; a plane may appear several times and is then compressed once. Each is shown for `delay`, at most
-/// 65 s. Programs that know no animation show the first frame.
+/// Lossless animation that every browser plays in an <img>, in an endless loop. `frames` are kRgb8 planes of one size,
+/// in the order shown; a plane may appear several times and is then compressed once. Each is shown for `delay`, at most
+/// 65 s. Programs without support for animation show the first frame.
 std::vector<std::byte> encode_animated_png(std::span<const Plane* const> frames, std::chrono::milliseconds delay);
 
-/// As a file, complete or not at all. Throws std::system_error.
+/// Writes the animation as a file that appears complete or not at all. Throws std::system_error.
 void write_animated_png(const std::filesystem::path& file, std::span<const Plane* const> frames,
                         std::chrono::milliseconds delay);
 

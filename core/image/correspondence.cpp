@@ -11,7 +11,7 @@ namespace fieldcast::image {
 namespace {
 
 constexpr float kDepthTolerance = 0.01F;
-constexpr float kRounding_px = 1e-3F; // of projected places: a camera at rest sees each pixel at its own centre
+constexpr float kRounding_px = 1e-3F; // of projected places: a camera at rest must see each pixel at its own centre
 
 /// The four pixels around a place, and their bilinear weights.
 struct Taps {
@@ -39,7 +39,7 @@ float inverse_depth(const ViewSurfaces& view, std::size_t pixel) {
     return 1.0F / view.depth_m[pixel]; // 0 where nothing was hit
 }
 
-/// Place and inverse depth in `source` of what pixel `pixel` of `target` sees.
+/// Place and inverse depth, in `source`, of the point that `pixel` of `target` shows.
 struct Seen {
     glm::vec2 place;
     float inverse_depth;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running variance: B. P. Welford. Note on a Method for Calculating Corrected Sums of Squares and LightFieldProducts.
+// Running variance: B. P. Welford. Note on a Method for Calculating Corrected Sums of Squares and Products.
 // Technometrics 4(3), 1962.
 #include "core/image/flicker.h"
 

@@ -5,7 +5,7 @@
 
 namespace fieldcast::image {
 
-/// How much the pixels of a picture change from frame to frame although nothing moves.
+/// Measures how much the pixels of a picture change from frame to frame while nothing moves.
 class Flicker {
 public:
     /// Adds one frame, display-referred; all have one size.

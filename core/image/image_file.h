@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/image/rgba8.h"
 #include "core/lightfield/plane.h"
 
 #include <cstddef>
@@ -16,13 +17,6 @@ namespace fieldcast::image {
 /// Checked against what the header of a file claims, before pixels are decoded.
 struct ImageLimits {
     std::uint64_t max_pixels = 1ULL << 26;
-};
-
-/// 8 bits per channel, not premultiplied, in the file's own transfer function.
-struct Rgba8 {
-    std::uint32_t width_px = 0;
-    std::uint32_t height_px = 0;
-    std::vector<std::uint8_t> pixels; ///< 4 bytes per pixel, row 0 on top
 };
 
 /// Linear RGB.

@@ -11,7 +11,7 @@ namespace fieldcast::image {
 
 enum class FileFormat : std::uint8_t { kPng, kJpeg, kWebp };
 
-/// What the first bytes of an encoded image claim.
+/// Format and size that the first bytes of an encoded image declare.
 struct ImageHeader {
     FileFormat format = FileFormat::kPng;
     std::uint32_t width_px = 0;

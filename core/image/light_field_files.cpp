@@ -30,8 +30,8 @@ void write_quilt(const std::filesystem::path& folder, const LightFieldPicture& p
     write_png(folder / ("quilt" + suffix + ".png"), assemble_quilt(picture.grid, picture.views.views, layout));
 }
 
-/// The first source image. All parts of an EXR show the same window, which planes with other sources and layers stacked
-/// below would leave.
+/// The first source image. All parts of an EXR have the same window, which planes with further sources and layers
+/// stacked below would exceed.
 SourceFrame first_image(const SourceFrame& source) {
     SourceFrame image;
     image.header = source.header;

@@ -8,7 +8,7 @@
 
 namespace fieldcast::image {
 
-/// Which files are made of a picture.
+/// Files to write for a picture.
 struct LightFieldProducts {
     bool quilt = true;          ///< quilt_qs{cols}x{rows}a{aspect}.png, view 0 bottom left
     bool views = true;          ///< view_r{row}_c{col}.png, row 0 on top

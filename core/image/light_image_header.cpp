@@ -16,7 +16,7 @@ constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01";
 constexpr std::size_t kMaxNameBytes = 255;
 constexpr std::size_t kMaxChannels = 32;
 constexpr std::uint64_t kMaxLinesPerChunk = 256; ///< of DWAB compression
-constexpr std::uint64_t kChunkEntryBytes = 8;    ///< in the table of where chunks begin
+constexpr std::uint64_t kChunkEntryBytes = 8;    ///< in the chunk offset table
 constexpr std::uint32_t kDeepFlag = 0x800;
 constexpr std::uint32_t kManyPartsFlag = 0x1000;
 
@@ -44,7 +44,7 @@ struct TypeSize {
     std::size_t bytes;
 };
 
-/// "Attribute Types". OpenEXR reads as many bytes as the type has, whatever size stands before the value.
+/// "Attribute Types". OpenEXR reads as many bytes as the type has, and ignores the size before the value.
 constexpr std::array kTypeSizes{
     TypeSize{"box2f", 16},         TypeSize{"box2i", 16},   TypeSize{"chromaticities", 32}, TypeSize{"compression", 1},
     TypeSize{"deepImageState", 1}, TypeSize{"double", 8},   TypeSize{"envmap", 1},          TypeSize{"float", 4},
@@ -64,20 +64,20 @@ bool skip_channel(std::string_view& list) {
     return true;
 }
 
-/// The channels end where their value does: with an empty name.
+/// The channel list must end with an empty name, exactly at the end of its value.
 bool is_channel_list(std::string_view value) {
     while (skip_channel(value)) {
     }
     return value.size() == 1 && value.front() == '\0';
 }
 
-/// Two sides and a pixel of four bytes for each.
+/// A width, a height, and four bytes for each pixel.
 bool is_preview(std::string_view value) {
     return value.size() >= 8 && std::uint64_t{little32(value)} * little32(value.substr(4)) == (value.size() - 8) / 4 &&
            value.size() % 4 == 0;
 }
 
-/// Sizes, each before its string.
+/// Strings, each after its size.
 bool is_string_list(std::string_view value) {
     while (value.size() >= 4 && little32(value) <= value.size() - 4) {
         value.remove_prefix(4 + little32(value));
@@ -85,8 +85,8 @@ bool is_string_list(std::string_view value) {
     return value.empty();
 }
 
-/// Whether OpenEXR finds the end of a value where its declared size puts it: it would take other bytes for the next
-/// attribute otherwise, and allocate what they say.
+/// Whether the declared size of a value is the one that OpenEXR derives from its type. Otherwise OpenEXR would read
+/// other bytes as the next attribute, and allocate the sizes found there.
 bool has_size_of_type(std::string_view type, std::string_view value) {
     if (type == "chlist") {
         return is_channel_list(value);
@@ -167,7 +167,7 @@ private:
         }
         const Attribute attribute{*name, bytes_.substr(4, little32(bytes_))};
         if (*type == "idmanifest" || !has_size_of_type(*type, attribute.value)) {
-            return decode_error("an attribute of the OpenEXR header has a size that is not its type's");
+            return decode_error("an attribute of the OpenEXR header has a size that does not match its type");
         }
         bytes_.remove_prefix(4 + attribute.value.size());
         return attribute;
@@ -184,7 +184,7 @@ private:
         return found;
     }
 
-    /// Of two corners, both inside; no size if it is not one.
+    /// Size of a window, given by two corners that both lie inside; 0 if there is no such window.
     static Size window_size(std::string_view corners) {
         if (corners.size() < 16) {
             return {};
@@ -197,7 +197,7 @@ private:
         return {side(0), side(1)};
     }
 
-    /// A name and 16 bytes each.
+    /// Channels have a name and 16 bytes each.
     static bool has_few_channels(std::string_view list) {
         std::size_t count = 0;
         while (skip_channel(list)) {
@@ -227,7 +227,7 @@ private:
         return has_room(chunks) ? Decoded<void>() : decode_error("image of " + text + " pixels in so small a file");
     }
 
-    std::string_view bytes_; ///< what is left
+    std::string_view bytes_; ///< the unread rest
     std::uint64_t file_bytes_;
     std::uint64_t max_pixels_;
 };

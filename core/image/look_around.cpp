@@ -19,7 +19,7 @@ std::vector<std::uint32_t> serpentine(const ViewGrid& grid) {
     return order;
 }
 
-/// The same way back, without repeating the two ends.
+/// `order`, followed by the same way back without its two ends.
 std::vector<std::uint32_t> there_and_back(std::vector<std::uint32_t> order) {
     for (std::size_t i = order.size() - 1; i-- > 1;) {
         order.push_back(order[i]);

@@ -85,7 +85,7 @@ void check_ssim_sizes(const RgbF32& image, const RgbF32& reference) {
     FC_ASSERT(image.width_px > 2 * kSsimRadius && image.height_px > 2 * kSsimRadius, "the window fits into the image");
 }
 
-/// Of an image and a reference, whose mean square in each window is `mean_yy`.
+/// SSIM of an image and a reference, whose mean square in each window is `mean_yy`.
 double mean_ssim(const Field& x, const Field& y, const Field& mean_yy) {
     const Field mean_x = window_mean(x);
     const Field mean_y = window_mean(y);

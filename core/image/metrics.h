@@ -9,7 +9,7 @@ namespace fieldcast::image {
 // Comparisons of two images of one size. RMSE, PSNR and SSIM take display-referred values in 0 … 1, as `display_image`
 // gives them; the reference comes second everywhere.
 
-/// clamp(exposure · linear, 0, 1) through the sRGB curve: what the metrics of the paper are taken of here.
+/// clamp(exposure · linear, 0, 1) through the sRGB curve. The metrics of the paper are computed on such images here.
 RgbF32 display_image(const RgbF32& linear, float exposure);
 
 /// Bytes of a kRgb8 plane divided by 255, the sRGB curve kept.
@@ -25,11 +25,11 @@ double psnr_db(const RgbF32& image, const RgbF32& reference);
 /// range 1 and population covariance, over the pixels whose window lies inside. Images are at least 11×11.
 double ssim(const RgbF32& image, const RgbF32& reference);
 
-/// What rmse() and ssim() would be against `first` and `second` without their noise. The two show the same and differ
-/// by independent noise only, so that products of one with the other are free of it where squares of their mean are
-/// not: (x − a)·(x − b) in place of (x − r)², and the covariance of a and b, if it is positive, in place of the
-/// variance of r. What the sRGB curve makes of noise in its mean remains. `image` has nothing in common with their
-/// noise.
+/// Estimates rmse() and ssim() against the reference that `first` and `second` would be without their noise. The two
+/// show the same and differ by independent noise only, so products of one with the other are free of that noise, and
+/// squares of their mean are not. (x − a)·(x − b) therefore replaces (x − r)², and the covariance of a and b, if it is
+/// positive, replaces the variance of r. The shift of the mean that the sRGB curve causes with noise remains. The noise
+/// of `image` must be independent of theirs.
 double rmse_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second);
 double ssim_without_noise(const RgbF32& image, const RgbF32& first, const RgbF32& second);
 

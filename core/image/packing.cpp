@@ -60,20 +60,20 @@ glm::vec2 fold(const glm::vec2& p) {
     return {(1.0F - std::abs(p.y)) * sign_not_zero(p.x), (1.0F - std::abs(p.x)) * sign_not_zero(p.y)};
 }
 
-/// `bits` wide, 8 or 16.
+/// Packs a number into `bits` bits, 8 or 16.
 std::uint32_t pack_snorm(float value, int bits) {
     const auto largest = static_cast<float>((1 << (bits - 1)) - 1);
     const float scaled = std::nearbyint(std::clamp(value, -1.0F, 1.0F) * largest);
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(scaled)) & ((1U << bits) - 1U);
 }
 
-/// The low `bits` of `word`, 8 or 16.
+/// Unpacks the low `bits` bits of `word`, 8 or 16.
 float unpack_snorm(std::uint32_t word, int bits) {
     const auto value = static_cast<std::int32_t>(word << (32 - bits)) >> (32 - bits);
     return std::max(static_cast<float>(value) / static_cast<float>((1 << (bits - 1)) - 1), -1.0F);
 }
 
-/// A component of `bits` each, x in the low ones.
+/// Packs two components of `bits` bits each, x in the low ones.
 std::uint32_t pack_octahedral(const glm::vec3& direction, int bits) {
     const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
     const glm::vec2 upper = glm::vec2(direction) / sum;

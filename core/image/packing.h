@@ -25,7 +25,7 @@ glm::vec3 unpack_oct2x8(std::uint32_t packed); ///< unit length for every word o
 
 /// Pixels of a plane as linear numbers, row-major: kR11G11B10F as RGB, kOct2x16 and kOct2x8 as a direction, kRgb8 as
 /// linear RGB in 0 … 1 after the sRGB curve is undone, kRg8 as (x, y, 0) in 0 … 1, kF32 and kR16 as (value, value,
-/// value). Not for kU32, whose values are names.
+/// value). Not for kU32, whose values are identifiers.
 std::vector<glm::vec3> unpack_plane(const Plane& plane);
 
 } // namespace fieldcast::image

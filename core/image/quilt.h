@@ -28,11 +28,12 @@ QuiltLayout choose_quilt_layout(const ViewGrid& grid);
 /// `views` are those of `grid`, row-major, all kRgb8 of one size. Unused tiles are black.
 Plane assemble_quilt(const ViewGrid& grid, std::span<const View> views, const QuiltLayout& layout);
 
-/// What display software reads from a file name before its extension: "_qs9x5a0.75" (columns, rows, width / height of
-/// one view).
+/// End of a file name, before its extension, from which display software reads the layout: "_qs9x5a0.75" (columns,
+/// rows, width / height of one view).
 std::string quilt_suffix(const QuiltLayout& layout, const Plane& view);
 
-/// All views for human eyes: view(0,0) on top left, as in the grid, `separator_px` of grey between neighbours.
+/// All views in one image for people: view(0,0) on top left, as in the grid, with `separator_px` of grey between
+/// neighbours.
 Plane contact_sheet(const ViewGrid& grid, std::span<const View> views, std::uint32_t separator_px = 2);
 
 } // namespace fieldcast::image

@@ -14,8 +14,8 @@ namespace fieldcast::image {
 
 namespace {
 
-/// How a plane appears in the file. `Layout::type` is what is stored; pixels are handed over as `unpack_plane` gives
-/// them, of which the first `channels` components are written.
+/// Layout of a plane in the file. `type` is the stored type. Pixels are passed as `unpack_plane` returns them, and
+/// their first `channels` components are written.
 struct Layout {
     const char* part = "";
     std::vector<std::string> channels;
@@ -53,7 +53,8 @@ Layout layout_of(PlaneSemantic semantic) {
 
 void describe(OIIO::ImageSpec& spec, const FrameHeader& header) {
     const Camera camera = widened_source(header, 0);
-    // OpenEXR multiplies row vectors, so its matrices are transposed; glm stores columns: the same 16 numbers.
+    // OpenEXR multiplies row vectors, so its matrices are transposed, but glm stores columns: the 16 numbers are the
+    // same.
     const glm::mat4 camera_from_world = glm::inverse(camera.world_from_camera);
     spec.attribute("worldtocamera", OIIO::TypeDesc::TypeMatrix, &camera_from_world[0][0]);
     spec.attribute("fieldcast:frame_id", std::to_string(header.frame_id));

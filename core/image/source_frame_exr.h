@@ -7,7 +7,7 @@
 
 namespace fieldcast::image {
 
-/// One EXR part per plane, for inspection and for the tools of others. No plane loses precision:
+/// One EXR part per plane, for inspection and for third-party tools. No plane loses precision:
 ///
 ///   part       channels               type    from
 ///   diffuse    R G B                  HALF    kR11G11B10F (every value is a half)

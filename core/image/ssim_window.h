@@ -7,7 +7,7 @@
 
 namespace fieldcast::image {
 
-// What all structural similarities here have in common.
+// Definitions that all structural similarities here share.
 
 inline constexpr std::size_t kSsimRadius = 5; // 3.5 σ, rounded: 11 taps
 using SsimTaps = std::array<double, 2 * kSsimRadius + 1>;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/image/image_file.h"
 #include "core/image/image_header.h"
+#include "core/image/rgba8.h"
 
 #include <cstddef>
 #include <span>

@@ -6,7 +6,7 @@
 
 namespace fieldcast {
 
-/// Pixels added around an image; sees more of the same pinhole.
+/// Pixels added around an image. They extend the field of view of the same pinhole camera.
 struct GuardBand {
     std::uint32_t left_px = 0;
     std::uint32_t right_px = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice of the guard band by counting, for each pixel around the source image, how many views need it.
+// Chooses the guard band by counting, for each pixel around the source image, the views that need it.
 //
 // A pixel x of the widened source at depth z lies in view Δ at x − Δ·d(z). If that is inside the view while x is
 // outside the source image, the view has an out-of-frustum pixel there, which a band reaching to x removes.
-// Approximations: occlusion is ignored (what a nearer surface hides in a view counts too), and each point counts once
+// Approximations: occlusion is ignored (points that a nearer surface hides count, too), and each point counts once
 // although a view may see it magnified. Both concern the share, not the direction in which the band grows.
 #include "core/lightfield/guard_band.h"
 
@@ -30,7 +30,8 @@ struct Rectangle {
     std::uint64_t area() const { return static_cast<std::uint64_t>(x1 - x0) * (y1 - y0); }
 };
 
-/// Offsets of the views from `at` along one axis, times f·b: with 1/z − 1/z_c the displacement in pixels.
+/// Offsets of the views from `at` along one axis, times f·b. Multiplied by 1/z − 1/z_c they are displacements in
+/// pixels.
 std::vector<float> displacements(const Camera& source, const ViewGrid& grid, LatticePosition at, bool is_horizontal) {
     std::vector<float> result;
     const std::uint32_t count = is_horizontal ? grid.cols : grid.rows;
@@ -43,7 +44,7 @@ std::vector<float> displacements(const Camera& source, const ViewGrid& grid, Lat
     return result;
 }
 
-/// How many views see, between 0 and `size_px`, a point that the source has at `source_px`.
+/// Number of views that see, between 0 and `size_px`, a point at `source_px` of the source.
 std::uint32_t count_inside(const std::vector<float>& displacements_px_m, float inverse_depth, float source_px,
                            float size_px) {
     std::uint32_t count = 0;
@@ -140,8 +141,8 @@ std::uint32_t room(const Rectangle& r, Side side, const Camera& widened) {
     return 0;
 }
 
-/// Most removed pixels per added source pixel that growing `side` by any width reaches; looking ahead steps over
-/// strips that no view needs, such as sky in front of a near wall.
+/// Largest ratio of removed pixels to added source pixels over all widths by which `side` may grow. Looking at all
+/// widths steps over strips that no view needs, such as sky in front of a near wall.
 double best_density(const NeedTable& table, const Rectangle& r, Side side, std::uint32_t room_px) {
     const auto now = static_cast<double>(table.sum(r));
     double best = 0.0;
@@ -153,7 +154,7 @@ double best_density(const NeedTable& table, const Rectangle& r, Side side, std::
     return best;
 }
 
-/// Grows `r` by one pixel on the side that pays most and stays within `max_area`. Returns false if none does.
+/// Grows `r` by one pixel on the side with the best density that stays within `max_area`. Returns false if none does.
 bool grow_once(Rectangle& r, const NeedTable& table, const Camera& widened, double max_area) {
     double best = 0.0;
     Rectangle best_rectangle = r;

@@ -7,7 +7,7 @@
 
 namespace fieldcast {
 
-/// How a guard band was chosen; both numbers are reported to the user.
+/// A chosen guard band, and two numbers that are reported to the user.
 struct GuardBandChoice {
     GuardBand band;
     double removed_share = 0.0; ///< of the out-of-frustum pixels of the largest grid, 0 … 1
@@ -25,8 +25,8 @@ GuardBandChoice choose_guard_band(const Camera& source, const GuardBand& widest,
                                   const ViewGrid& largest, double target_share = kGuardBandTarget,
                                   double max_extra_share = kGuardBandCap, LatticePosition at = {});
 
-/// A band certainly large enough to measure with: `grid`'s offsets × the disparity at `nearest_m`, at most
-/// half the image size on each side.
+/// An upper bound of the guard band, for measuring: `grid`'s offsets × the disparity at `nearest_m`, at most half the
+/// image size on each side.
 GuardBand widest_guard_band(const Camera& source, const ViewGrid& grid, float nearest_m, LatticePosition at = {});
 
 } // namespace fieldcast

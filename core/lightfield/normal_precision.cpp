@@ -21,7 +21,7 @@ constexpr int rescaled(int value, int from, int to) {
     return (product >= 0 ? product + from : product - from) / (2 * from);
 }
 
-/// Every component of `plane`, read as `From`, as a `To`.
+/// Converts every component of `plane` from a `From` to a `To`.
 template <class From, class To> Plane converted(const Plane& plane, PlaneFormat format, int from_one, int to_one) {
     Plane result{plane.semantic, format, plane.width_px, plane.height_px, {}};
     const std::size_t count = plane.bytes.size() / sizeof(From);

@@ -11,7 +11,7 @@ namespace fieldcast {
 
 std::uint32_t bytes_per_pixel(PlaneFormat format); ///< 0 for a value that is not a format
 
-/// Limits for anything that comes from outside.
+/// Limits for planes from untrusted sources.
 inline constexpr std::uint32_t kMaxPlaneSide = 16384;
 inline constexpr std::uint64_t kMaxPlaneBytes = 256ULL << 20;
 

@@ -39,7 +39,7 @@ std::optional<Preset> named_preset(const std::string& name, std::uint32_t rows, 
     return std::nullopt;
 }
 
-/// One thing about a preset made otherwise, to see what it is worth.
+/// Changes one setting of a preset, so that its effect can be measured. False if the word is unknown.
 bool change(Preset& preset, const std::string& word) {
     RenderSettings& settings = preset.settings;
     if (word == "sobol") {

@@ -11,7 +11,7 @@ std::optional<HoleFilling> parse_hole_filling(const std::string& text, std::uint
     }
     HoleFilling holes = HoleFilling::path_traced();
     if (text.ends_with(",")) {
-        return std::nullopt; // an empty word that getline does not see
+        return std::nullopt; // getline does not return an empty last word
     }
     if (text == "none") {
         return holes;

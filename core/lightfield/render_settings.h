@@ -12,7 +12,7 @@ namespace fieldcast {
 enum class ToneMap : std::uint8_t { kClampSrgb = 0, kAces = 1 };
 
 /// Thresholds of the spatial reprojection test, in units of the pixel footprint ρ = 2 z tan(fovy/2) / H
-/// (docs/lightfield.md). Scale-free, so no constants per scene.
+/// (docs/lightfield.md). They are scale-free, so no scene needs constants of its own.
 struct ReprojectionThresholds {
     float plane_footprints = 1.5F;      ///< |n·(P_s − P_t)| ≤ plane_footprints · ρ + 1e-4 z
     float tangential_footprints = 2.5F; ///< |P_s − P_t| ≤ tangential_footprints · ρ / |n·v|
@@ -22,12 +22,12 @@ struct ReprojectionThresholds {
     bool operator==(const ReprojectionThresholds&) const = default;
 };
 
-/// How pixels are filled that the source does not show, cheapest first; what is left is path traced
+/// Methods that fill pixels which the source does not show, cheapest first. The remaining pixels are path traced
 /// (docs/lightfield.md).
 struct HoleFilling {
-    bool previous_frame = true;     ///< average the hole's own light over frames; trace settled holes now and then only
+    bool previous_frame = true;     ///< average a hole's own light over frames; trace settled holes every fourth frame
     bool isolated = true;           ///< isolated holes take light of the same surface around their place in the source
-    std::uint32_t cascade_rows = 0; ///< inner views take holes from the corner views of a grid of so many rows …
+    std::uint32_t cascade_rows = 0; ///< inner views take holes from the corner views of a grid with this many rows …
     std::uint32_t cascade_cols = 0; ///< … and columns, anchored on the lattice; 0: none
     bool end_in_source = true;      ///< paths end on surfaces that the source shows
     bool denoise = true;            ///< smooth the light of holes over their surface
@@ -42,7 +42,7 @@ std::optional<HoleFilling> parse_hole_filling(const std::string& text, std::uint
 
 inline constexpr std::uint32_t kMaxLightCandidates = 64;
 
-/// How next event estimation chooses its light sample; every choice is unbiased (docs/lightfield.md).
+/// Choice of the light sample in next event estimation; every choice is unbiased (docs/lightfield.md).
 struct LightSampling {
     std::uint32_t candidates = 4; ///< 1 to 64, unshadowed, at the first two vertices; resampling keeps one
     bool each_kind = true; ///< at the first vertex: a sample of each kind of light (environment, emissive, punctual)
@@ -52,23 +52,24 @@ struct LightSampling {
     bool operator==(const LightSampling&) const = default;
 };
 
-/// Where the random numbers of the source's paths come from: Owen-scrambled Sobol points either way. kSobol: a sequence
-/// of its own for each pixel. kZSobol: one sequence, shifted from pixel to pixel along a Z-order curve, so that
+/// Random numbers of the source's paths; both values stand for Owen-scrambled Sobol points. kSobol: each pixel has its
+/// own sequence. kZSobol: all pixels share one sequence, shifted from pixel to pixel along a Z-order curve, so that
 /// neighbours complement one another.
 enum class Sampler : std::uint8_t { kSobol, kZSobol };
 
-/// Every parameter that changes a pixel, on both sides of the wire. Travels in each frame header.
+/// Every parameter that changes a pixel, on the server or at the client. Each frame header contains them.
 struct RenderSettings {
     std::uint32_t samples_per_pixel = 1;
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
     LightSampling light_sampling;
     Sampler sampler = Sampler::kZSobol;
-    /// The source's paths end on surfaces that the frame before showed, with the light that it had for them; not where
-    /// views are denoised or still frames averaged (docs/lightfield.md).
+    /// The source's paths end on surfaces that the previous frame showed, and use its light there. Not used where views
+    /// are denoised or still frames are averaged (docs/lightfield.md).
     bool history_light = true;
-    /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. Where little of the picture is lit, its
-    /// light is far above the mean: 20 took a third of Sponza's indirect light (docs/benchmarks.md).
+    /// Luminance limit of one indirect sample, × 0.18 / exposure; 0: unbiased. If only a small part of the picture is
+    /// lit, the light there is far above the mean: a limit of 20 removed a third of Sponza's indirect light
+    /// (docs/benchmarks.md).
     float indirect_clamp = 100.0F;
     Denoiser denoiser = Denoiser::kSvgfPlus;
     bool temporal_accumulation = true;
@@ -82,7 +83,7 @@ struct RenderSettings {
     ToneMap tone_map = ToneMap::kClampSrgb;
     float exposure = 1.0F; ///< multiplies linear radiance before the tone map
     ReprojectionThresholds reprojection;
-    bool reflections = true; ///< smooth surfaces show each view what they mirror there; else their light sticks to them
+    bool reflections = true; ///< smooth surfaces show each view its reflection; else their light sticks to them
     HoleFilling holes;
 
     bool operator==(const RenderSettings&) const = default;

@@ -23,7 +23,7 @@ struct StageTime {
 
 /// The pose that a client chose and a frame shows.
 struct AppliedPose {
-    std::uint64_t lease = 0;         ///< of who steers, > 0
+    std::uint64_t lease = 0;         ///< of the client that steers the camera, > 0
     std::uint64_t sequence = 0;      ///< within the lease
     std::int64_t client_time_ns = 0; ///< when it was chosen, on that client's steady clock
 
@@ -38,31 +38,30 @@ struct FrameHeader {
     std::uint64_t frame_id = 0;     ///< grows by at least 1 per frame of a channel
     std::int64_t scene_time_ns = 0; ///< poses every animation of the scene
     bool cut = false;               ///< histories are void: loop wrap, teleport, scene change
-    std::uint32_t seed = 0;         ///< of the channel: with noise_frame it settles all random numbers of the frame
+    std::uint32_t seed = 0;         ///< of the channel; with noise_frame it determines all random numbers of the frame
     std::uint32_t noise_frame = 0;  ///< position in the random sequences; consecutive frames continue them
     Camera source;                  ///< at lattice position (0, 0), without guard band
     GuardBand guard_band;           ///< planes are the source image plus this band
-    /// Where the source images are taken from, at most kMaxSources, none twice; the geometry is that of these
-    /// positions.
+    /// Lattice positions of the source images in `source_geometry`, at most kMaxSources, without duplicates.
     std::vector<LatticePosition> source_positions = middle_source();
     LatticeGeometry source_geometry;
     RenderSettings settings;
-    /// BLEND surfaces in front of what the source's pixels see, 0 or kMaxLayers. Their illumination is stacked below
+    /// BLEND surfaces in front of the source's visible surfaces, 0 or kMaxLayers. Their illumination is stacked below
     /// the images' in the illumination planes, which are (1 + layer_count) times as high.
     std::uint32_t layer_count = 0;
-    /// Frames that the illumination is the plain average of, as nothing moved since and the settings ask for it
-    /// (accumulate); 0: the usual way.
+    /// Number of frames of which the illumination is the plain average, while nothing moves and the settings ask for it
+    /// (accumulate); 0: the usual accumulation.
     std::uint32_t still_frames = 0;
-    /// Step of planes that hold inverse depth, 1/m; 0: there are none.
+    /// Step of planes that hold inverse depth, 1/m; 0: no such planes.
     float inverse_depth_unit = 0.0F;
     ResidualLayer residual; ///< of planes kResidual…
-    std::optional<AppliedPose> applied_pose; ///< that `source` follows; empty: nobody has steered the camera
+    std::optional<AppliedPose> applied_pose; ///< the pose that `source` shows; empty: no client has steered the camera
     std::vector<StageTime> render_times;
 
     bool operator==(const FrameHeader&) const = default;
 };
 
-/// What one frame of path tracing yields, in wire precision: the border between server and clients.
+/// Result of path tracing one frame, in wire precision. It is the interface between server and clients.
 struct SourceFrame {
     FrameHeader header;
     std::vector<Plane> planes; ///< of plane_width() and plane_height(), at most one per semantic
@@ -73,21 +72,21 @@ struct SourceFrame {
 /// Camera of source image `index`, guard band included. All have one size.
 Camera widened_source(const FrameHeader& header, std::size_t index);
 
-/// Whether planes of that meaning hold demodulated light.
+/// Whether planes with that semantic hold demodulated light.
 bool is_illumination(PlaneSemantic semantic);
 
-/// Planes are stacks of pages, each of the widened source's size: first what every source sees, source by source, then
-/// (illumination only) the nearest BLEND surface in front of that, source by source, then the next.
+/// Planes are stacks of pages, each of the widened source's size: first the visible surfaces, source by source, then
+/// (illumination only) the nearest BLEND surface in front of them, source by source, then the next.
 std::uint32_t page_count(const FrameHeader& header, PlaneSemantic semantic);
 
-/// Whether planes of that meaning hold tiles of `FrameHeader::residual`.
+/// Whether planes with that semantic hold tiles of `FrameHeader::residual`.
 bool is_residual(PlaneSemantic semantic);
 
 /// Width of a plane of a source frame: the widened source's, or that of the tiles of the residual layer.
 std::uint32_t plane_width(const FrameHeader& header, PlaneSemantic semantic);
 
-/// Height of a plane of a source frame: the widened source's, times the pages that the semantic has, or that of the
-/// tiles of the residual layer.
+/// Height of a plane of a source frame: the widened source's height times the number of pages of the semantic, or the
+/// height of the tiles of the residual layer.
 std::uint32_t plane_height(const FrameHeader& header, PlaneSemantic semantic);
 
 } // namespace fieldcast

@@ -9,10 +9,10 @@
 
 namespace fieldcast {
 
-/// Which views of `grid` are source images: "middle" (lattice position (0, 0)), "top-left", "diagonal" (top left and
-/// bottom right), "triangle" (top left, top right, middle of the bottom row), "corners" – the five configurations of
-/// the light field paper, section 4.2 – or a list of views of the grid, "ROW,COL" separated by semicolons. Empty if
-/// malformed, beside the grid, named twice or more than kMaxSources.
+/// Reads which views of `grid` are source images: "middle" (lattice position (0, 0)), "top-left", "diagonal" (top left
+/// and bottom right), "triangle" (top left, top right, middle of the bottom row), "corners" – the five configurations
+/// of the light field paper, section 4.2 – or a list of views of the grid, "ROW,COL" separated by semicolons. Empty if
+/// the text is malformed, names a view outside the grid, names a view twice, or names more than kMaxSources views.
 std::optional<std::vector<LatticePosition>> parse_sources(const std::string& text, const ViewGrid& grid);
 
 } // namespace fieldcast

@@ -29,7 +29,7 @@ struct LatticePosition {
 inline constexpr std::array kMiddleSource{LatticePosition{}}; ///< one source, where the lattice has its origin
 std::vector<LatticePosition> middle_source();                 ///< the same
 
-/// What all views of one lattice share. Views of equal geometry, size and position are the same view.
+/// Geometry that all views of one lattice share. Views of equal geometry, size and position are the same view.
 struct LatticeGeometry {
     glm::vec2 spacing_m{0.03F}; ///< distance of neighbouring views: x between columns, y between rows
     float convergence_m = std::numeric_limits<float>::infinity(); ///< depth of zero disparity; infinity: parallel
@@ -66,7 +66,7 @@ std::optional<glm::uvec2> parse_size(const std::string& text);
 LatticePosition lattice_position(const ViewGrid& grid, std::uint32_t row, std::uint32_t col);
 std::vector<LatticePosition> lattice_positions(const ViewGrid& grid);
 
-/// `camera` of lattice position (0, 0), moved to `position`: parallel, with the shear that convergence asks for.
+/// `camera` of lattice position (0, 0), moved to `position`: parallel, with the shear for the convergence distance.
 Camera moved_camera(Camera camera, const LatticeGeometry& geometry, LatticePosition position);
 
 /// Camera of a view. `source` is the camera of position (0, 0) without guard band; the view has the given size, and the

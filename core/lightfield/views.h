@@ -7,7 +7,7 @@
 
 namespace fieldcast {
 
-/// Why pixels of a target view could not be taken from the source. All counts are pixels of one view.
+/// Pixels of a target view that could not be taken from the source, by reason. All counts are pixels of one view.
 struct DiscardCounts {
     std::uint32_t out_of_frustum = 0; ///< projects outside the source image and its guard band
     std::uint32_t id = 0;             ///< other instance or material seen there

@@ -10,12 +10,12 @@
 #include <string_view>
 #include <vector>
 
-// What a stream may contain: delivery modes, planes, formats, codecs, denoisers. Each value has one row, and everything else
+// Content of a stream: delivery modes, planes, formats, codecs, denoisers. Each value has one row, and everything else
 // derives from the rows: wire checks, words of flags and files, negotiation, adaptation, recordings, metrics, load
 // scenarios and benchmarks. docs/extending.md says how to add a value.
 namespace fieldcast {
 
-/// What a plane means. Values are on the wire: never renumber.
+/// Meaning of a plane. Values are on the wire: never renumber.
 enum class PlaneSemantic : std::uint8_t {
     kDiffuse = 1,  ///< demodulated diffuse illumination, linear Rec. 709, unexposed
     kSpecular = 2, ///< demodulated specular illumination
@@ -27,7 +27,7 @@ enum class PlaneSemantic : std::uint8_t {
     kInverseDepth = 20,         ///< 1 / view depth in units of FrameHeader::inverse_depth_unit; 0 where nothing was hit
     kResidualColour = 21,       ///< as kColour, of ResidualLayer
     kResidualInverseDepth = 22, ///< as kInverseDepth, of ResidualLayer
-    kTotalLight = 30,           ///< illumination that, taken for both kDiffuse and kSpecular, shows the same
+    kTotalLight = 30,           ///< illumination that gives the same image when used as both kDiffuse and kSpecular
 };
 
 /// How one pixel is stored, little-endian. Values are on the wire: never renumber.
@@ -42,7 +42,7 @@ enum class PlaneFormat : std::uint8_t {
     kOct2x8 = 30, ///< u16: octahedral x in the low, y in the high 8 bits, snorm
 };
 
-/// How a plane's strips become bytes. Values are on the wire: never renumber.
+/// Coding of a plane's strips. Values are on the wire: never renumber.
 enum class Codec : std::uint8_t {
     kRaw = 1,          ///< pixels as they are
     kZstdFiltered = 2, ///< predictor per format, byte planes, zstd level 1
@@ -50,7 +50,7 @@ enum class Codec : std::uint8_t {
     kH264 = 4,         ///< H.264, 4:2:0; views are predicted from one view of the same frame
 };
 
-/// What the server sends, and so where the views are made. Values are on the wire: never renumber.
+/// Content of a stream, which decides where the views are made. Values are on the wire: never renumber.
 enum class DeliveryMode : std::uint8_t {
     kViews = 1, ///< finished views
     kScene = 2, ///< planes of the source; the client has the scene and makes its own views
@@ -67,7 +67,7 @@ enum class PlaneSet : std::uint8_t {
 /// Planes that a client of mode kWarp wants besides that mode's own. Values are on the wire: never renumber.
 enum class WarpPlane : std::uint8_t { kResidual = 1, kNormal = 2, kId = 3 };
 
-/// What smooths the light of pixels. Values are on the wire: never renumber.
+/// Filter that smooths the light of pixels. Values are on the wire: never renumber.
 enum class Denoiser : std::uint8_t {
     kNone = 1,
     kSvgf = 2,     ///< with its paper's parameters
@@ -82,7 +82,7 @@ enum class DenoisedImages : std::uint8_t {
     kViews = 2,  ///< every view, after the source's noisy light was reprojected and holes were filled
 };
 
-/// Who makes the views that a client shows.
+/// Side that makes the views which a client shows.
 enum class ViewMaker : std::uint8_t { kServer, kClient };
 
 struct FormatRow {
@@ -93,7 +93,7 @@ struct FormatRow {
 struct PlaneRow {
     std::string_view word;
     PlaneFormat format{};                       ///< of source frames, and on the wire unless another was agreed on
-    std::optional<PlaneFormat> coarse_format{}; ///< the other one that clients may ask for
+    std::optional<PlaneFormat> coarse_format{}; ///< the alternative that clients may request
 };
 
 struct CodecRow {
@@ -108,16 +108,16 @@ struct ModeRow {
     ViewMaker maker = ViewMaker::kServer;
     bool needs_scene = false;                 ///< the client has to hold the scene
     bool needs_one_source = false;            ///< only of channels that render one source image
-    std::span<const PlaneSemantic> planes{}; ///< that each of its frames has; more: planes_of()
+    std::span<const PlaneSemantic> planes{}; ///< present in each of its frames; planes_of() adds the others
 };
 
-/// Of a PlaneSet or a WarpPlane.
+/// Row of a PlaneSet or a WarpPlane.
 struct PlaneListRow {
     std::string_view word;
     std::span<const PlaneSemantic> planes{};
 };
 
-/// Of an enumeration about which flags and files need nothing but its words.
+/// Row of an enumeration of which flags and files need only the words.
 struct WordRow {
     std::string_view word;
 };
@@ -139,7 +139,7 @@ inline constexpr std::array kOfId{kId};
 
 } // namespace vocabulary
 
-// The rows. A value without a row does not compile (-Wswitch); a number that is no value has a row without a word.
+// The rows. A value without a row does not compile (-Wswitch); a number that is not a value gets a row without a word.
 
 constexpr FormatRow row_of(PlaneFormat format) {
     switch (format) {
@@ -308,7 +308,7 @@ template <class Enum> constexpr std::optional<Enum> from_word(std::string_view w
     return std::nullopt;
 }
 
-/// Their words, for people: "views, scene or warp".
+/// The words of the values for messages: "views, scene or warp".
 template <class Enum> std::string alternatives(std::span<const Enum> values = kAll<Enum>) {
     std::string text;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -333,7 +333,7 @@ constexpr bool is_lossy(Codec codec) {
     return row_of(codec).is_lossy;
 }
 
-/// Whether planes of that format can be encoded so.
+/// Whether that codec can encode planes of that format.
 constexpr bool carries(Codec codec, PlaneFormat format) {
     const std::span<const PlaneFormat> only = row_of(codec).only;
     bool is_found = only.empty();
@@ -343,18 +343,19 @@ constexpr bool carries(Codec codec, PlaneFormat format) {
     return is_found;
 }
 
-/// The format of such planes in source frames, and on the wire unless another one was agreed on.
+/// Format of planes with that semantic in source frames, and on the wire unless another one was agreed on.
 constexpr PlaneFormat usual_format(PlaneSemantic semantic) {
     return row_of(semantic).format;
 }
 
-/// Whether such planes may be sent in that format.
+/// Whether planes with that semantic may be sent in that format.
 constexpr bool may_have_format(PlaneSemantic semantic, PlaneFormat format) {
     const PlaneRow row = row_of(semantic);
     return format == row.format || format == row.coarse_format;
 }
 
-/// Whether some lossy codec carries such planes: clients choose codecs for these; all others are lossless.
+/// Whether some lossy codec carries planes with that semantic. Clients choose codecs for these; all others are
+/// lossless.
 constexpr bool is_picture(PlaneSemantic semantic) {
     for (const Codec codec : kAll<Codec>) {
         if (is_lossy(codec) && carries(codec, usual_format(semantic))) {
@@ -368,8 +369,8 @@ constexpr bool is_made_by_client(DeliveryMode mode) {
     return row_of(mode).maker == ViewMaker::kClient;
 }
 
-/// What a frame of that mode contains, in the order in which it is sent. `set` counts in modes that need the scene,
-/// `extra` in those with planes of their own that a client makes views from.
+/// Planes of a frame of that mode, in the order in which they are sent. `set` matters in modes that need the scene.
+/// `extra` matters in modes whose own planes let a client make views without it.
 std::vector<PlaneSemantic> planes_of(DeliveryMode mode, PlaneSet set, std::span<const WarpPlane> extra);
 
 } // namespace fieldcast

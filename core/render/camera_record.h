@@ -10,7 +10,7 @@
 
 namespace fieldcast::render {
 
-/// A camera as kernels see it.
+/// The record of `camera` that kernels read.
 inline shared::CameraRecord make_camera_record(const Camera& camera) {
     shared::CameraRecord record{};
     record.origin = glm::vec3(camera.world_from_camera[3]);

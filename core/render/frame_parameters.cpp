@@ -23,7 +23,7 @@ std::uint32_t view_seed(const FrameHeader& header, LatticePosition position) {
     return hash_combine(seed, static_cast<std::uint32_t>(position.col_halves));
 }
 
-void append_times(const gpu::Recorder& recorder, std::vector<StageTime>& times) {
+void append_times(const gpu::CommandRecorder& recorder, std::vector<StageTime>& times) {
     for (const gpu::StageDuration& duration : recorder.durations()) {
         times.push_back({duration.stage, duration.ms});
     }

@@ -9,7 +9,7 @@
 
 namespace fieldcast::render {
 
-static_assert(shared::kGroupListDispatch == shared::kGroupListCount + 1); // finish_list.comp
+static_assert(shared::kGroupListDispatch == shared::kGroupListCount + 1); // finish_list.comp writes both
 
 GroupList::GroupList(const gpu::Device& device)
     : device_(device), list_groups_(make_plain_kernel(device, KernelId::kListGroups, sizeof(shared::ListGroupsParams))),
@@ -33,12 +33,12 @@ void GroupList::list_all() {
     gpu::write_buffer(device_, list_, std::as_bytes(std::span(list)));
 }
 
-void GroupList::clear(gpu::Recorder& recorder) const {
+void GroupList::clear(gpu::CommandRecorder& recorder) const {
     recorder.fill(flags_, 0);
     recorder.fill(list_, 0, 0, shared::kGroupListFirst * sizeof(std::uint32_t));
 }
 
-void GroupList::record(gpu::Recorder& recorder, std::uint32_t width_px) const {
+void GroupList::record(gpu::CommandRecorder& recorder, std::uint32_t width_px) const {
     const shared::ListGroupsParams params{flags_.address(), list_.address(), width_px, group_count_};
     recorder.dispatch(list_groups_, {}, params, linear_groups(group_count_));
     recorder.barrier();

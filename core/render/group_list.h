@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 
 namespace fieldcast::render {
 
-/// Groups of pixels to which a kernel's work is confined: a CPU device goes through every instruction even where
-/// no pixel of a group has anything to do. Pixels of other groups keep what they hold.
+/// Groups of pixels that a kernel runs on. Idle groups are skipped, because a CPU device executes every instruction
+/// even if no pixel of a group has work. Pixels of groups that are not listed keep their values.
 class GroupList {
 public:
     explicit GroupList(const gpu::Device& device);
 
-    /// Room for so many groups. True: it has changed and the list is undefined.
+    /// Makes room for `group_count` groups. Returns true if the room has changed; the list is undefined then.
     bool resize(std::uint32_t group_count);
 
-    /// Every group. Blocks.
+    /// Lists every group. Blocks.
     void list_all();
 
-    /// All flags 0; then kernels set those of groups with a surface, and `record` lists them, with `width_px` together
-    /// with those that touch them, in any order: groups of kLinearGroup pixels of pictures of that width. Visible after
-    /// a barrier.
-    void clear(gpu::Recorder& recorder) const;
-    void record(gpu::Recorder& recorder, std::uint32_t width_px) const;
+    /// clear() sets all flags to 0. Kernels then set the flags of groups with a surface, and record() lists these
+    /// groups in any order. With `width_px` (pixels per row; 0: unused), groups are kLinearGroup pixels of images of
+    /// that width, and groups that touch a flagged one are listed, too. The list is visible after a barrier.
+    void clear(gpu::CommandRecorder& recorder) const;
+    void record(gpu::CommandRecorder& recorder, std::uint32_t width_px) const;
 
     /// One u32 per group.
     const gpu::Buffer& flags() const { return flags_; }
-    /// As lib/linear_index.glsl wants it.
+    /// Count, dispatch size and group indices, in the layout that lib/linear_index.glsl reads.
     const gpu::Buffer& list() const { return list_; }
 
 private:
@@ -37,11 +37,11 @@ private:
     gpu::Buffer list_;
 };
 
-/// Runs a kernel that asks for listed_index() or listed_group() on the groups of the list.
+/// Dispatches a kernel that uses listed_index() or listed_group() on the groups of the list.
 template <class Push>
-void dispatch_listed(gpu::Recorder& recorder, const gpu::Kernel& kernel,
+void dispatch_listed(gpu::CommandRecorder& recorder, const gpu::Kernel& kernel,
                      std::initializer_list<const gpu::BindingSet*> sets, const Push& push, const GroupList& groups) {
-    recorder.dispatch_indirect(kernel, sets, push, groups.list(), sizeof(std::uint32_t)); // after the length
+    recorder.dispatch_indirect(kernel, sets, push, groups.list(), sizeof(std::uint32_t)); // skips the count
 }
 
 } // namespace fieldcast::render

@@ -14,7 +14,7 @@ namespace fieldcast::render {
 
 namespace {
 
-/// A kernel for both ways of traversal; those that trace no rays have the same code for both.
+/// A kernel's code for both traversals; the two are equal for kernels that trace no rays.
 struct EmbeddedKernel {
     KernelId id;
     const char* name;
@@ -42,7 +42,7 @@ gpu::RasterCode raster_code(RasterId id) {
     case RasterId::kDrawVisibility:
         return {vertex, {"draw_visibility_frag", draw_visibility_frag_spv}};
     }
-    FC_ASSERT(false, "unknown shaders");
+    FC_ASSERT(false, "unknown raster shaders");
     return {};
 }
 

@@ -7,18 +7,18 @@
 
 namespace fieldcast::render {
 
-/// The embedded pairs of shaders that draw (shaders/*.vert, *.frag).
+/// The embedded pairs of vertex and fragment shaders (shaders/*.vert, *.frag).
 enum class RasterId { kDrawBlend, kDrawVisibility };
 gpu::RasterCode raster_code(RasterId id);
 
-/// Code of a kernel, in the variant for `traversal` if it traces rays.
+/// Code of a kernel; kernels that trace rays come in the variant for `traversal`.
 gpu::KernelCode kernel_code(KernelId id, scene::Traversal traversal);
 
-/// A kernel that looks at the scene: set 0 is the scene's, `sets` follow from 1 on.
+/// A kernel that reads the scene: binding set 0 is the scene's, `sets` are numbered from 1.
 gpu::Kernel make_scene_kernel(const gpu::Device& device, const scene::GpuScene& scene, KernelId id,
                               std::uint32_t push_bytes, const std::vector<const gpu::BindingLayout*>& sets = {});
 
-/// A kernel that does not.
+/// A kernel that does not read the scene.
 gpu::Kernel make_plain_kernel(const gpu::Device& device, KernelId id, std::uint32_t push_bytes,
                               const std::vector<const gpu::BindingLayout*>& sets = {});
 

@@ -20,7 +20,7 @@ struct ReferenceRenderer::State {
 
     const gpu::Device& device;
     const scene::GpuScene& scene;
-    gpu::Recorder recorder;
+    gpu::CommandRecorder recorder;
     gpu::Kernel kernel;
     gpu::Buffer camera_record;
     gpu::Buffer invalid_samples;
@@ -48,7 +48,8 @@ void ReferenceRenderer::start(const Camera& camera) {
 void ReferenceRenderer::resume(const Camera& camera, const std::vector<glm::vec3>& image,
                                std::uint32_t samples_per_pixel) {
     start(camera);
-    FC_ASSERT(image.size() == static_cast<std::size_t>(camera.width_px) * camera.height_px, "image of another size");
+    FC_ASSERT(image.size() == static_cast<std::size_t>(camera.width_px) * camera.height_px,
+              "the image does not have the camera's size");
     std::vector<glm::vec4> film;
     film.reserve(image.size());
     const auto samples = static_cast<float>(samples_per_pixel);
@@ -61,7 +62,7 @@ void ReferenceRenderer::resume(const Camera& camera, const std::vector<glm::vec3
 
 void ReferenceRenderer::accumulate(const RenderSettings& settings, std::uint32_t seed) {
     State& s = *state_;
-    FC_ASSERT(s.film, "start() comes first");
+    FC_ASSERT(s.film, "accumulate() needs start() first");
     shared::TraceReferenceParams params{};
     params.camera = s.camera_record.address();
     params.film = s.film.address();

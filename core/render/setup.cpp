@@ -10,7 +10,7 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kMeasureHeight = 180; // pixels; the band is then scaled to the source
+constexpr std::uint32_t kMeasureHeight = 180; // pixels; the measured band is scaled to the source
 
 /// Depth of every pixel of the source camera widened by `band`.
 std::vector<float> trace_depth(const gpu::Device& device, const scene::GpuScene& scene, const Camera& source,
@@ -24,7 +24,7 @@ std::vector<float> trace_depth(const gpu::Device& device, const scene::GpuScene&
     return gpu::read_buffer_as<float>(device, planes.plane(PlaneSemantic::kDepth), planes.pixel_count());
 }
 
-/// Depth that one pixel in a thousand is nearer than; infinity for an empty image.
+/// The quantile 1/1000 of the depths; infinity for an empty image.
 float nearest_depth(std::vector<float> depth_m) {
     const auto rank = static_cast<std::ptrdiff_t>(depth_m.size() / 1000);
     std::ranges::nth_element(depth_m, depth_m.begin() + rank);

@@ -4,7 +4,6 @@
 #include "core/base/error.h"
 #include "core/gpu/acceleration_structure.h"
 #include "core/scene/bvh.h"
-#include "core/scene/gpu_scene.h"
 #include "shaders/shared/scene.h"
 
 #include <algorithm>

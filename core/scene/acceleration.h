@@ -4,12 +4,11 @@
 #include "core/gpu/bindings.h"
 #include "core/gpu/kernel.h"
 #include "core/scene/scene.h"
+#include "core/scene/traversal.h"
 
 #include <memory>
 
 namespace fieldcast::scene {
-
-enum class Traversal : std::uint8_t;
 
 struct AccelerationOptions {
     bool share_meshes = false; ///< BVH: one bottom level per mesh even where flattening would be faster

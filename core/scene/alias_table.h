@@ -8,8 +8,8 @@
 namespace fieldcast::scene {
 
 struct AliasEntry {
-    float accept = 1.0F;     ///< keep the own index if u < accept
-    std::uint32_t alias = 0; ///< else take this one
+    float accept = 1.0F;     ///< draw the entry's own index if u < accept
+    std::uint32_t alias = 0; ///< index drawn otherwise
     float probability = 0.0F;
 };
 

@@ -10,8 +10,8 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Times are stored in single precision and frame times in nanoseconds: the last key still counts as reached, and
-/// its frame as part of the loop, when both differ by rounding.
+/// Key times are in single precision and frame times in nanoseconds. Within this tolerance, a frame reaches the last
+/// key and is still part of the loop.
 constexpr double kLoopTolerance_s = 1e-6;
 
 double seconds(std::int64_t time_ns) {
@@ -51,7 +51,7 @@ glm::vec4 linear(const AnimationChannel& channel, std::size_t key, float t) {
     return glm::mix(value0, value1, t);
 }
 
-/// Value of a channel; held before the first key and after the last.
+/// Value of a channel. Before the first key and after the last one it is constant.
 glm::vec4 sample(const AnimationChannel& channel, double time_s) {
     const auto& times = channel.times_s;
     const std::size_t stride = channel.interpolation == Interpolation::kCubic ? 3 : 1;
@@ -114,7 +114,7 @@ glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& fallback) {
 } // namespace
 
 std::int64_t loop_index(const Scene& scene, std::int64_t time_ns) {
-    if (scene.duration_s <= kLoopTolerance_s) { // also keeps the quotient below within 64 bits
+    if (scene.duration_s <= kLoopTolerance_s) { // also keeps the quotient below within the range of 64 bits
         return 0;
     }
     const double loops = std::ceil((seconds(time_ns) - kLoopTolerance_s) / scene.duration_s) - 1.0;
@@ -149,7 +149,7 @@ const CameraNode* find_camera(const Scene& scene, const std::string& name) {
 
 glm::mat4 camera_pose(const ScenePose& pose, const CameraNode& camera) {
     const glm::mat4& world_from_node = pose.world_from_node.at(camera.node);
-    // Backward and up decide; a mirrored or sheared node must not mirror or shear the image.
+    // The axes follow from backward and up alone, so that a mirrored or sheared node does not affect the image.
     const glm::vec3 back = unit_or(glm::vec3(world_from_node[2]), {0.0F, 0.0F, 1.0F});
     const glm::vec3 up(world_from_node[1]);
     const glm::vec3 any_side = std::abs(back.y) < 0.9F ? glm::vec3(back.z, 0.0F, -back.x) : glm::vec3(1.0F, 0.0F, 0.0F);

@@ -87,7 +87,7 @@ private:
     std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-/// Reads a bundle front to back; after the first failure everything is zero and `error` says why.
+/// Reads a bundle front to back. After the first failure all values are zero, and `error` holds the reason.
 class BundleReader {
 public:
     explicit BundleReader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -110,7 +110,7 @@ public:
         }
         return value;
     }
-    /// A path in the one form that a bundle may have.
+    /// Reads a path; its only valid form is the shortest one.
     std::string take_path(const char* what) {
         const auto bytes = take(take_integer<std::uint16_t>(what), what);
         const std::string path(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -152,7 +152,7 @@ struct BundleContents {
 void read_entries(BundleReader& reader, BundleContents& contents) {
     const auto count = reader.take_integer<std::uint32_t>("file count");
     if (count > kMaxFiles) {
-        reader.fail("bundle: more than " + std::to_string(kMaxFiles) + " files");
+        reader.fail("bundle: has more than " + std::to_string(kMaxFiles) + " files");
     }
     for (std::uint32_t i = 0; i < count && reader.error.empty(); ++i) {
         BundleEntry entry;
@@ -165,7 +165,7 @@ void read_entries(BundleReader& reader, BundleContents& contents) {
     }
 }
 
-/// Refuses "a" beside "a/b", and a glTF file or environment that is not in the bundle.
+/// Refuses a file "a" beside a file "a/b", and a glTF file or environment that is not in the bundle.
 void check_entries(BundleReader& reader, const BundleContents& contents) {
     std::set<std::string_view> paths;
     for (const BundleEntry& entry : contents.entries) {
@@ -175,7 +175,7 @@ void check_entries(BundleReader& reader, const BundleContents& contents) {
         const std::string_view path = entry.path;
         for (std::size_t slash = path.find('/'); slash != std::string_view::npos; slash = path.find('/', slash + 1)) {
             if (paths.contains(path.substr(0, slash))) {
-                reader.fail("bundle: a file is also a folder");
+                reader.fail("bundle: the path of a file is also that of a folder");
             }
         }
     }
@@ -193,7 +193,7 @@ Decoded<BundleContents> read_bundle(std::span<const std::byte> bundle) {
     BundleContents contents;
     const auto magic = reader.take(kMagic.size(), "magic");
     if (std::string_view(reinterpret_cast<const char*>(magic.data()), magic.size()) != kMagic) {
-        return decode_error("bundle: no scene bundle");
+        return decode_error("bundle: is not a scene bundle");
     }
     if (const auto version = reader.take_integer<std::uint32_t>("version"); version != kVersion) {
         reader.fail("bundle: version " + std::to_string(version) + " is not supported");
@@ -211,7 +211,7 @@ Decoded<BundleContents> read_bundle(std::span<const std::byte> bundle) {
         check_entries(reader, contents);
     }
     if (!reader.is_at_end()) {
-        reader.fail("bundle: bytes after the last file");
+        reader.fail("bundle: has bytes after the last file");
     }
     return reader.error.empty() ? Decoded<BundleContents>(std::move(contents)) : decode_error(reader.error);
 }
@@ -267,7 +267,7 @@ Decoded<UnpackedBundle> unpack_bundle(std::span<const std::byte> bundle, const f
     }
     std::error_code error;
     fs::create_directories(folder, error);
-    // A folder that is not ours could hold links that lead elsewhere.
+    // A folder with foreign contents could hold links that lead out of it.
     if (error || !fs::is_empty(folder, error) || error) {
         return decode_error("bundle: " + folder.string() + " is not a new or empty folder");
     }

@@ -11,19 +11,20 @@
 
 namespace fieldcast::scene {
 
-/// The canonical bundle: every file a scene is made of (glTF, buffers, images, environment) with its relative path,
-/// and the import options, in one byte string. Its SHA-256 is the scene hash; FetchScene sends it.
+/// The canonical bundle: one byte string with every file of a scene (glTF, buffers, images, environment), its relative
+/// path, and the import options. Its SHA-256 is the scene hash; FetchScene sends the bundle. Throws UserError.
 std::vector<std::byte> make_bundle(const std::filesystem::path& file, const LoadOptions& options);
 
 SceneHash hash_bundle(std::span<const std::byte> bundle);
 std::string to_hex(const SceneHash& hash);
 
-/// Checks a bundle from outside and unpacks it into `folder` (created; nothing outside it is written).
-/// Returns what load_scene needs. Paths that are absolute, contain ".." or name a scheme are refused.
+/// Arguments of load_scene() for an unpacked bundle.
 struct UnpackedBundle {
     std::filesystem::path file;
     LoadOptions options;
 };
+/// Checks a bundle from outside and unpacks it into `folder`, which is created and must be empty. Nothing outside it is
+/// written. Refuses paths that are absolute, contain ".." or name a scheme.
 Decoded<UnpackedBundle> unpack_bundle(std::span<const std::byte> bundle, const std::filesystem::path& folder);
 
 } // namespace fieldcast::scene

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kManyTriangles = 8ULL << 20;
 constexpr std::uint64_t kMuchSharing = 4;
-/// Boxes grow by this part of the largest coordinate: the kernel's rounding of origin − plane, with a margin.
+/// Boxes grow by this fraction of the largest coordinate. It covers the kernel's rounding of origin − plane.
 constexpr float kPadding = 0x1p-21F;
 
 std::uint32_t alpha_flags(const Material& material) {
@@ -54,14 +54,15 @@ Box transform(const glm::mat4& matrix, const Box& box) {
 
 void check_bounds(const Scene& scene, const Box& box) {
     if (!box.is_empty() && !(largest_coordinate(box) <= kMaxCoordinate)) {
-        throw UserError(scene.name + ": geometry lies farther than 1e10 m from the origin");
+        throw UserError(scene.name + ": geometry lies farther than 1e10 m from the origin; move or scale it");
     }
 }
 
 void check_counts(const Scene& scene, std::size_t nodes, std::size_t triangles) {
     if (nodes > shared::kBvhMaxNodes || triangles > (1ULL << 31)) {
         throw UserError(scene.name + ": " + std::to_string(triangles) + " placed triangles need " +
-                        std::to_string(nodes) + " BVH nodes, the limit is " + std::to_string(shared::kBvhMaxNodes));
+                        std::to_string(nodes) + " BVH nodes; the limit is " + std::to_string(shared::kBvhMaxNodes) +
+                        ", so use a simpler scene");
     }
 }
 
@@ -91,7 +92,7 @@ Bvh::Bvh(const Scene& scene, const ScenePose& pose, const BvhOptions& options) {
         flatten(scene, pose);
     }
     const bool in_world = placements_.empty() || (placements_.size() == 1 && placements_[0].node == kNone);
-    // A binary tree over n levels has at most n − 1 inner nodes, and each level a node that places it.
+    // A binary tree over n levels has at most n − 1 inner nodes; one more node per level places it.
     top_capacity_ = in_world ? 0 : static_cast<std::uint32_t>(2 * placements_.size());
     nodes_.resize(top_capacity_);
     for (BottomLevel& level : levels_) {
@@ -167,7 +168,7 @@ void Bvh::place(const ScenePose& pose) {
             placement.node == kNone ? glm::mat4(1.0F) : pose.world_from_node[placement.node];
         const double volume = std::abs(glm::determinant(glm::dmat4(world_from_level)));
         if (level.bounds.is_empty() || !(volume > 0.0)) {
-            continue; // scaled to nothing
+            continue; // its scale is 0 in some direction
         }
         Box box = transform(world_from_level, level.bounds);
         pad(box, 4.0F * kPadding * largest_coordinate(box));
@@ -176,7 +177,7 @@ void Bvh::place(const ScenePose& pose) {
         placed_.push_back(placed_level(level_from_world, level.root, placement.first_instance));
     }
     const WideTree tree = build_tree(boxes, 0, 0, {.max_leaf_size = 1, .leaf_nodes = true});
-    FC_ASSERT(tree.nodes.size() <= top_capacity_, "the top level outgrew its nodes");
+    FC_ASSERT(tree.nodes.size() <= top_capacity_, "the top level exceeds its reserved nodes");
     std::copy(tree.nodes.begin(), tree.nodes.end(), nodes_.begin());
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxExponent = (1 << shared::kBvhExponentBits) - 1;
 constexpr int kExponentBias = static_cast<int>(shared::kBvhExponentBias);
 constexpr double kCells = 255.0;
-/// Room for the rounding of `plane · cell + offset` in the kernel, in cells: 255 cells · 2^-23, with a margin.
+/// Slack in cells for the kernel's rounding of `plane · cell + offset`, which is at most 255 cells · 2^-23.
 constexpr double kSlackCells = 1e-3;
 
 /// Smallest stored exponent whose 255 cells span `extent` and the slack at both ends.
@@ -47,7 +47,7 @@ AxisPlanes encode_axis(const std::array<NodeChild, shared::kBvhWidth>& children,
     planes.origin = static_cast<float>(lower - kSlackCells * cell);
     for (std::uint32_t slot = 0; slot < shared::kBvhWidth; ++slot) {
         const NodeChild& child = children[slot];
-        // Unused slots get an inverted box; even if it is met, there is nothing in it.
+        // Unused slots get an inverted box. A ray that hits it nevertheless finds no triangles in it.
         std::uint32_t low = 255;
         std::uint32_t high = 0;
         if (child.kind != 0) {

@@ -20,20 +20,20 @@ struct Box {
     float half_area() const;
 };
 
-/// Largest magnitude of a coordinate in a BVH, metres: beyond it, cells do not fit the exponents of shared::BvhNode.
+/// Largest magnitude of a coordinate in a BVH, metres. Larger cells do not fit the exponents of shared::BvhNode.
 inline constexpr float kMaxCoordinate = 1e10F;
 
-/// One child of a node about to be encoded.
+/// One child of a node that is to be encoded.
 struct NodeChild {
     Box box;
     std::uint32_t kind = 0; ///< kBvhChildInner, or number of triangles (0: unused slot)
 };
 
-/// Encodes a node whose inner children stand before its leaves. Decoded boxes contain the given ones.
+/// Encodes a node whose inner children precede its leaves. Decoded boxes contain the given ones.
 shared::BvhNode encode_node(const std::array<NodeChild, shared::kBvhWidth>& children, std::uint32_t first_child,
                             std::uint32_t first_triangle);
 
-/// The child in `slot` as the kernels see it; for tests and references on the CPU.
+/// Decodes the child in `slot` as the kernels do; for tests and references on the CPU.
 NodeChild decode_child(const shared::BvhNode& node, std::uint32_t slot);
 
 } // namespace fieldcast::scene

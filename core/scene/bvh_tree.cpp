@@ -15,16 +15,16 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Below this depth of the binary tree Embree splits in the middle; 4-wide trees are about half as deep.
+/// Beyond this depth of the binary tree Embree splits in the middle. 4-wide trees are about half as deep.
 constexpr std::uint32_t kMaxBinaryDepth = 48;
 
-/// A node of the binary tree, with the cheapest ways to represent it by at most 1, 2 or 3 wide nodes or leaves.
+/// A node of the binary tree, with the least costs of representing it by at most 1, 2 or 3 wide nodes or leaves.
 struct Branch {
     Box box;
     float cost[3]{};
-    std::uint32_t count = 1;     ///< primitives below
-    std::uint32_t primitive = 0; ///< if there are no children
-    bool is_leaf = true;         ///< of the wide tree, when represented by one
+    std::uint32_t count = 1;     ///< number of primitives below
+    std::uint32_t primitive = 0; ///< the primitive of a node without children
+    bool is_leaf = true;         ///< becomes a leaf of the wide tree if represented by one node
     Branch* child[2]{};
 };
 
@@ -81,11 +81,11 @@ void set_children(void* node, void** children, unsigned int count, void* options
          *static_cast<const TreeOptions*>(options));
 }
 
-void set_bounds(void*, const RTCBounds**, unsigned int, void*) {} // join() does
+void set_bounds(void*, const RTCBounds**, unsigned int, void*) {} // join() sets the bounds
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count,
                   void* options) {
-    FC_ASSERT(count == 1, "leaves are made when the tree is widened");
+    FC_ASSERT(count == 1, "Embree must not make leaves of several primitives");
     auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(Branch), 16)) Branch;
     leaf->box = box_of(*primitives);
     leaf->primitive = primitives->primID;
@@ -100,7 +100,7 @@ struct ReleaseEmbree {
 using EmbreeDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseEmbree>;
 using EmbreeBvh = std::unique_ptr<std::remove_pointer_t<RTCBVH>, ReleaseEmbree>;
 
-/// Null if Embree could not stay within the depth; the nodes live as long as `bvh`.
+/// The root of Embree's tree; null if Embree cannot keep within the depth. The nodes live as long as `bvh`.
 Branch* build_with_embree(std::vector<RTCBuildPrimitive>& primitives, RTCBVH bvh, TreeOptions options) {
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.byteSize = sizeof(arguments);
@@ -121,10 +121,10 @@ Branch* build_with_embree(std::vector<RTCBuildPrimitive>& primitives, RTCBVH bvh
     return static_cast<Branch*>(rtcBuildBVH(&arguments));
 }
 
-/// Splits at the median of the longest axis: worse boxes, but the least possible depth.
+/// Splits at the median of the longest axis. The boxes are worse than Embree's, but the depth is the least possible.
 Branch* build_balanced(std::span<const Box> boxes, std::span<std::uint32_t> indices, std::vector<Branch>& storage,
                        const TreeOptions& options) {
-    Branch* branch = &storage.emplace_back(); // `storage` has been reserved
+    Branch* branch = &storage.emplace_back(); // no reallocation: `storage` has the capacity
     if (indices.size() == 1) {
         branch->box = boxes[indices[0]];
         branch->primitive = indices[0];
@@ -146,7 +146,7 @@ Branch* build_balanced(std::span<const Box> boxes, std::span<std::uint32_t> indi
     return branch;
 }
 
-/// Writes the wide tree that set_costs() found best.
+/// Writes the wide tree of least cost according to set_costs().
 class Widener {
 public:
     Widener(std::uint32_t first_node, std::uint32_t first_leaf, bool leaf_nodes)
@@ -164,10 +164,10 @@ private:
     struct Children {
         std::array<const Branch*, shared::kBvhWidth> branch{};
         std::uint32_t count = 0;
-        std::uint32_t inner_count = 0; ///< these come first
+        std::uint32_t inner_count = 0; ///< number of inner children, which come first
     };
 
-    /// Represents `branch` by at most `budget` children.
+    /// Appends the best representation of `branch` by at most `budget` children.
     static void gather(const Branch& branch, std::uint32_t budget, Children& children) {
         while (budget > 1 && budget < 4 && branch.cost[budget - 1] == branch.cost[budget - 2]) {
             --budget;
@@ -248,7 +248,7 @@ WideTree build_tree(std::span<const Box> boxes, std::uint32_t first_node, std::u
         return {{encode_node({}, first_node, first_leaf)}, {}, {}, 1};
     }
     static const EmbreeDevice device(rtcNewDevice(nullptr)); // starting Embree takes milliseconds
-    FC_ASSERT(device != nullptr, "Embree does not start");
+    FC_ASSERT(device != nullptr, "Embree cannot create a device");
     std::vector<RTCBuildPrimitive> primitives = build_primitives(boxes);
     const EmbreeBvh bvh(rtcNewBVH(device.get()));
     if (const Branch* root = build_with_embree(primitives, bvh.get(), options)) {

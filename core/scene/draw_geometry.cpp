@@ -13,10 +13,10 @@ namespace fieldcast::scene {
 
 namespace {
 
-constexpr std::size_t kClusterTriangles = 128; // fewer would cull more and draw more often
+constexpr std::size_t kClusterTriangles = 128; // fewer would cull more triangles, but need more draw calls
 constexpr std::size_t kMostIndices = std::numeric_limits<std::int32_t>::max();
 
-/// A triangle that is placed in its group's space.
+/// A triangle in its group's space.
 struct PlacedTriangle {
     std::uint32_t part = 0;
     std::uint32_t primitive = 0;
@@ -45,8 +45,8 @@ std::vector<PlacedTriangle> place_triangles(const Scene& scene, const RigidGroup
     return placed;
 }
 
-/// Halves the longest side of the box around the middles until few enough are left, so that what is near in space is
-/// near in the list.
+/// Splits the longest side of the box around the centroids until one cluster is left. Triangles that are close in space
+/// are then close in the list.
 void sort_in_space(std::span<PlacedTriangle> triangles) {
     if (triangles.size() <= kClusterTriangles) {
         return;
@@ -60,7 +60,7 @@ void sort_in_space(std::span<PlacedTriangle> triangles) {
     const glm::vec3 size = high - low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
     const std::size_t clusters = (triangles.size() + kClusterTriangles - 1) / kClusterTriangles;
-    const std::size_t half = (clusters + 1) / 2 * kClusterTriangles; // all clusters but the last are full
+    const std::size_t half = (clusters + 1) / 2 * kClusterTriangles; // full clusters, except the last one
     std::ranges::nth_element(triangles, triangles.begin() + static_cast<std::ptrdiff_t>(half), {},
                              [axis](const PlacedTriangle& t) { return t.middle()[axis]; });
     sort_in_space(triangles.first(half));
@@ -93,10 +93,10 @@ public:
     std::vector<glm::uvec2> triangles; ///< (instance, primitive)
 
 private:
-    /// A vertex in the cluster that is made.
+    /// A vertex of the cluster under construction.
     struct Known {
         std::uint32_t index = 0;
-        bool is_first = false; ///< of a triangle, which it numbers
+        bool is_first = false; ///< first vertex of a triangle, whose number it holds
     };
 
     Known& find(std::uint32_t part, std::uint32_t corner, const glm::vec3& position) {
@@ -108,8 +108,8 @@ private:
         return found->second;
     }
 
-    /// Its first vertex must number it, and can number only one; the order of the three does not matter to what is
-    /// drawn.
+    /// The first vertex must hold the triangle's number, and a vertex can hold only one. Rotating the three vertices
+    /// does not change the image.
     void add(std::uint32_t instance, const PlacedTriangle& triangle) {
         std::array<Known*, 3> corners{};
         for (std::uint32_t i = 0; i < 3; ++i) {
@@ -119,9 +119,9 @@ private:
         while (first < 3 && corners[first]->is_first) {
             ++first;
         }
-        if (first == 3) { // all of them number others
+        if (first == 3) { // all three hold numbers of other triangles
             first = 0;
-            corners[0]->index = static_cast<std::uint32_t>(vertices.size()); // later triangles use the new one
+            corners[0]->index = static_cast<std::uint32_t>(vertices.size()); // later triangles use the new vertex
             vertices.push_back({triangle.positions[0], 0});
         }
         corners[first]->is_first = true;
@@ -132,7 +132,7 @@ private:
         }
     }
 
-    std::unordered_map<std::uint64_t, Known> known_; ///< by part and corner
+    std::unordered_map<std::uint64_t, Known> known_; ///< key: part and corner
 };
 
 } // namespace
@@ -144,7 +144,8 @@ DrawGeometry::DrawGeometry(const gpu::Device& device, const Scene& scene, const 
         for (const AlphaMode mode : {AlphaMode::kOpaque, AlphaMode::kMask, AlphaMode::kBlend}) {
             std::vector<PlacedTriangle> triangles = place_triangles(scene, group, mode);
             if (drawing.indices.size() + 3 * triangles.size() > kMostIndices) {
-                throw UserError(scene.name + ": has more placed triangles than can be drawn; use --visibility rays");
+                throw UserError(scene.name + ": the scene has more than " + std::to_string(kMostIndices / 3) +
+                                " placed triangles, the limit of the rasteriser; use --visibility rays");
             }
             sort_in_space(triangles);
             for (std::size_t first = 0; first < triangles.size(); first += kClusterTriangles) {

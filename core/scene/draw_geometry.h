@@ -8,13 +8,13 @@
 
 namespace fieldcast::scene {
 
-/// A vertex as drawing shaders get it: one fetch. A triangle's first one numbers it.
+/// A vertex that a vertex shader fetches in one access. The first vertex of a triangle holds the triangle's number.
 struct DrawVertex {
-    glm::vec3 position;     ///< in the space of its group
+    glm::vec3 position;     ///< metres, in the space of its group
     std::uint32_t triangle; ///< index into DrawGeometry::triangles()
 };
 
-/// Triangles near each other, and the box around them in their group's space.
+/// Triangles that are close to each other, and their bounding box in their group's space.
 struct TriangleCluster {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
@@ -22,14 +22,14 @@ struct TriangleCluster {
     glm::vec3 half_size{0.0F};
 };
 
-/// What moves rigidly together, by the alpha mode of its materials. Clusters near each other follow each other, and so
-/// do their indices.
+/// Triangles that move rigidly together, by the alpha mode of their materials. Clusters that are close in space are
+/// close in the list, and so are their indices.
 struct DrawGroup {
-    std::uint32_t node = kNone;                           ///< whose transform places it; kNone: it lies in world space
-    std::array<std::vector<TriangleCluster>, 3> clusters; ///< by AlphaMode
+    std::uint32_t node = kNone;                           ///< node whose transform places it; kNone: world space
+    std::array<std::vector<TriangleCluster>, 3> clusters; ///< indexed by AlphaMode
 };
 
-/// The triangles of a scene for a rasteriser. Nothing in it changes with the pose.
+/// The triangles of a scene for a rasteriser. They do not depend on the pose after construction.
 class DrawGeometry {
 public:
     /// Throws UserError if there are more triangles than can be drawn.

@@ -33,9 +33,9 @@ Environment read_environment(const LoadOptions& options) {
         if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z)) {
             throw UserError(options.environment->filename().string() + ": pixel " +
                             std::to_string(i % environment.width_px) + ", " + std::to_string(i / environment.width_px) +
-                            " is not finite");
+                            " is not finite; save the image without NaN and infinity");
         }
-        pixel = glm::max(pixel, glm::vec3(0.0F)); // resampling leaves small negative numbers
+        pixel = glm::max(pixel, glm::vec3(0.0F)); // image resampling can produce small negative values
     }
     return environment;
 }

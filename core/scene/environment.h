@@ -6,7 +6,7 @@
 
 namespace fieldcast::scene {
 
-/// Reads the environment image, or takes the constant sky. Throws UserError.
+/// Reads the environment image; without one, returns the constant sky. Throws UserError.
 Environment read_environment(const LoadOptions& options);
 
 /// Throws UserError unless `sky` is finite and not negative.

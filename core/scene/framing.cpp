@@ -16,24 +16,24 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Three-quarter view of an object: its front is +Z (glTF 2.0, section 3.4), the camera stands to the right and above.
+// Three-quarter view of an object. Its front is +Z (glTF 2.0, section 3.4); the camera stands to the right and above.
 constexpr float kYaw = 30.0F * kPi / 180.0F;
 constexpr float kElevation = 20.0F * kPi / 180.0F;
 constexpr float kObjectFovy = 40.0F * kPi / 180.0F;
-constexpr float kMargin = 1.05F; ///< of the frame around the scene
+constexpr float kMargin = 1.05F; ///< size of the frame over the size of the scene in it
 
 // Rooms.
 constexpr float kRoomFovy = 60.0F * kPi / 180.0F;
-constexpr int kPlaces = 7;               ///< that are tried, in each direction of the floor
-constexpr int kProbeRays = 192;          ///< of each place
-constexpr int kAzimuths = 48;            ///< that are looked along
+constexpr int kPlaces = 7;               ///< places to try, in each direction of the floor
+constexpr int kProbeRays = 192;          ///< rays per place
+constexpr int kAzimuths = 48;            ///< viewing directions to try per place
 constexpr float kEnclosed = 0.75F;       ///< least share of rays that hit something
-constexpr float kFromWithin = 0.6F;      ///< least share of hits on front sides: from within a solid object all are backs
+constexpr float kFromWithin = 0.6F;      ///< least share of hits on front sides; inside a solid object it is 0
 constexpr float kRoomPlaces = 0.25F;     ///< least share of places that are enclosed
 constexpr float kEyeHeight_m = 1.6F;
-constexpr float kLowestCeiling_m = 1.9F; ///< a person stands upright between this
-constexpr float kHighestCeiling_m = 60.0F; ///< and this; scenes with other ceilings are not in metres
-constexpr float kEyeShare = 0.45F;       ///< height of eyes in such a scene, of its ceiling
+constexpr float kLowestCeiling_m = 1.9F; ///< a person can stand upright below it
+constexpr float kHighestCeiling_m = 60.0F; ///< scenes with higher or lower ceilings are not in metres
+constexpr float kEyeShare = 0.45F;       ///< eye height over ceiling height in scenes that are not in metres
 
 struct Box {
     glm::vec3 low{std::numeric_limits<float>::max()};
@@ -64,8 +64,8 @@ Box bounds_of(const Mesh& mesh) {
     return box;
 }
 
-/// Points in world space that everything shown lies between: all corners of triangles, or, of scenes with very many, the
-/// corners of their meshes' boxes.
+/// Points in world space whose convex hull contains the scene: all corners of triangles. If these are very many, the
+/// corners of the meshes' bounding boxes replace them.
 class Outline {
 public:
     Outline(const Scene& scene, const ScenePose& pose) : scene_(scene), pose_(pose) {
@@ -73,7 +73,7 @@ public:
         for (const Instance& instance : scene.instances) {
             count += 3 * scene.meshes[instance.mesh].triangles.size();
         }
-        constexpr std::uint64_t kMostPoints = 30'000'000; // a tenth of a second
+        constexpr std::uint64_t kMostPoints = 30'000'000; // these take a tenth of a second
         if (count > kMostPoints) {
             for (const Mesh& mesh : scene.meshes) {
                 boxes_.push_back(bounds_of(mesh));
@@ -107,11 +107,11 @@ public:
 private:
     const Scene& scene_;
     const ScenePose& pose_;
-    std::vector<Box> boxes_; ///< of meshes; empty: triangles are looked at
+    std::vector<Box> boxes_; ///< of meshes; empty: corners of triangles are used
     Box box_;
 };
 
-/// Evenly over the sphere (Fibonacci spiral).
+/// Direction `i` of `count` that are spread evenly over the sphere (Fibonacci spiral).
 glm::vec3 sphere_direction(int i, int count) {
     const float y = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
     const float angle = static_cast<float>(i) * kPi * (3.0F - std::sqrt(5.0F));
@@ -119,26 +119,26 @@ glm::vec3 sphere_direction(int i, int count) {
     return {radius * std::cos(angle), y, radius * std::sin(angle)};
 }
 
-/// Into the scene from there; `longest` where nothing is hit.
+/// Distance from `from` to the nearest surface, metres; at most `longest`.
 float free_distance(const RayProbe& probe, const glm::vec3& from, const glm::vec3& direction, float longest) {
     const auto hit = probe.trace(from, direction);
     return hit ? std::min(hit->distance_m, longest) : longest;
 }
 
-/// A place of a room to stand at.
+/// A camera position in a room.
 struct Place {
     glm::vec3 eye{0.0F};
     glm::vec3 direction{0.0F};
-    float free_m = 0.0F; ///< in that direction
+    float free_m = 0.0F; ///< free distance in that direction
 };
 
 class RoomFinder {
 public:
-    /// `has_light`: inside, apart from what comes in.
+    /// `has_light`: the scene itself has light, apart from its environment.
     RoomFinder(const RayProbe& probe, const Box& box, bool has_light)
         : probe_(probe), box_(box), longest_(glm::length(box.size())), has_light_(has_light) {}
 
-    /// The place from which one sees farthest; nothing if the scene is no room.
+    /// The place with the longest free direction; nothing if the scene is not a room.
     std::optional<Place> best() const {
         std::optional<Place> best;
         int enclosed = 0;
@@ -158,7 +158,7 @@ public:
     }
 
 private:
-    /// Above the floor, below half of the scene's height.
+    /// Eye position above the floor that lies below the middle of the scene's height.
     glm::vec3 eye_at(float u, float v) const {
         const glm::vec3 size = box_.size();
         const glm::vec3 middle(box_.low.x + u * size.x, box_.centre().y, box_.low.z + v * size.z);
@@ -181,13 +181,13 @@ private:
                 nearest = std::min(nearest, hit->distance_m);
             }
         }
-        constexpr float kClearance = 0.01F; // of the scene: not in a wall or a shelf
+        constexpr float kClearance = 0.01F; // share of the scene's size: the camera must not stand in a wall or a shelf
         const bool is_dark = hits == kProbeRays && !has_light_; // a closed box
         return !is_dark && static_cast<float>(hits) >= kEnclosed * kProbeRays &&
                static_cast<float>(fronts) >= kFromWithin * static_cast<float>(hits) && nearest >= kClearance * longest_;
     }
 
-    /// Slightly down, as people look; mean of a few rays, so that no slit counts.
+    /// The direction of greatest free distance, slightly downwards. A mean of a few rays prevents that slits count.
     Place looking_far(const glm::vec3& eye) const {
         Place place{.eye = eye};
         for (int i = 0; i < kAzimuths; ++i) {
@@ -225,7 +225,7 @@ glm::quat looking_along(const glm::vec3& direction) {
     return glm::quatLookAt(direction, is_vertical ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
 }
 
-/// From where everything is in the image.
+/// Distance from `at`, in direction `back`, at which the image contains the whole scene.
 float fitting_distance(const Outline& outline, const glm::vec3& at, const glm::vec3& back, float fovy_rad,
                        float aspect) {
     const glm::mat3 local_from_world = glm::transpose(glm::mat3_cast(looking_along(-back)));
@@ -271,7 +271,7 @@ Framing find_framing(const Scene& scene, const RayProbe& probe, const FramingOpt
     const auto place = is_open ? RoomFinder(probe, box, has_light(scene)).best() : std::nullopt;
     Framing framing = place ? room_framing(*place, options) : object_framing(outline, options, aspect);
     const float least = std::max(1e-6F, 1e-4F * glm::length(box.size()));
-    if (glm::distance(framing.from, framing.at) < least) { // a point, or looking from where it looks to
+    if (glm::distance(framing.from, framing.at) < least) { // a scene of one point, or look_from equals look_at
         framing.at = framing.from + glm::vec3(0.0F, 0.0F, -least);
     }
     return framing;
@@ -321,7 +321,7 @@ std::optional<DepthRange> depth_range(const RayProbe& probe, const glm::mat4& wo
         const glm::vec3 local = glm::normalize(
             glm::vec3(x * half_width(fovy_rad, aspect), y * half_width(fovy_rad, 1.0F), -1.0F));
         const auto hit = probe.trace(glm::vec3(world_from_camera[3]), axes * local);
-        if (hit && hit->distance_m > 0.0F) { // a camera in a surface sees it nowhere
+        if (hit && hit->distance_m > 0.0F) { // a camera that lies in a surface does not see it
             depths.push_back(hit->distance_m * -local.z);
         }
     }
@@ -335,7 +335,7 @@ std::optional<DepthRange> depth_range(const RayProbe& probe, const glm::mat4& wo
     return DepthRange{.near_m = at(0.05), .middle_m = at(0.5), .far_m = at(0.95)};
 }
 
-// Disparity between neighbouring views, in widths: spacing / (2 tan(fovx / 2)) · |1 / depth - 1 / convergence|
+// Disparity between neighbouring views, in widths, is spacing / (2 tan(fovx / 2)) · |1 / depth - 1 / convergence|
 // (docs/lightfield.md, "Cameras").
 float comfortable_spacing(const DepthRange& depths, float convergence_m, std::uint32_t count, float fovy_rad,
                           float aspect) {
@@ -344,8 +344,8 @@ float comfortable_spacing(const DepthRange& depths, float convergence_m, std::ui
     }
     const float zero = 1.0F / convergence_m;
     const float largest = std::max(std::abs(1.0F / depths.near_m - zero), std::abs(1.0F / depths.far_m - zero));
-    const float flat = 0.02F / depths.near_m; // all at one depth: a spacing all the same
-    const float sky = zero / 3.0F;            // what lies at infinity may have three times the disparity
+    const float flat = 0.02F / depths.near_m; // limits the spacing if all depths are equal
+    const float sky = zero / 3.0F;            // points at infinity may have three times the disparity
     return kComfortableDisparity * 2.0F * half_width(fovy_rad, aspect) /
            (static_cast<float>(count - 1) * std::max({largest, flat, sky}));
 }

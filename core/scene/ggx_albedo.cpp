@@ -39,7 +39,7 @@ glm::vec4 integrate(float cos_view, float roughness) {
         if (light.z <= 0.0F) {
             continue;
         }
-        // G2 / G1, height-correlated
+        // G2 / G1, height-correlated masking and shadowing
         const float lambda_view = smith_term(cos_view, alpha);
         const float lambda_light = smith_term(light.z, alpha);
         const float weight = light.z * (cos_view + lambda_view) / (light.z * lambda_view + cos_view * lambda_light);

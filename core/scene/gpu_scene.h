@@ -3,27 +3,12 @@
 
 #include "core/gpu/kernel.h"
 #include "core/scene/draw_geometry.h"
+#include "core/scene/traversal.h"
+#include "core/scene/visibility_method.h"
 
 #include <memory>
-#include <string>
 
 namespace fieldcast::scene {
-
-/// How rays are traced: our own BVH in texel buffers, or VK_KHR_ray_query.
-enum class Traversal : std::uint8_t { kBvh, kRayQuery };
-
-/// Reads "bvh" | "rayquery" | "auto": ray query where the device has it and is not a CPU (docs/decisions/0007). Throws
-/// UserError if what was asked for cannot be had.
-Traversal choose_traversal(const gpu::Device& device, const std::string& asked);
-
-/// How it is found what views see: by rays, by a rasteriser that draws the triangles into each view, or by what should be
-/// faster for these views of this scene. Sources are always traced, so that who rebuilds their surfaces gets the same
-/// bits.
-enum class VisibilityMethod : std::uint8_t { kRays, kRaster, kFaster };
-
-/// Reads "rays" | "raster" | "auto": what is faster on a CPU, rays elsewhere (docs/decisions/0015-views-are-drawn.md). Throws
-/// UserError if what was asked for cannot be had.
-VisibilityMethod choose_visibility(const gpu::Device& device, const std::string& asked);
 
 /// A scene on a Vulkan device: descriptor set 0 of every kernel that looks at surfaces (shaders/shared/scene.h).
 /// `scene` must outlive it. Unless it is said how, views are made visible as choose_visibility() does for "auto".

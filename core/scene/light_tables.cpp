@@ -21,7 +21,7 @@ double srgb_to_linear(std::uint8_t value) {
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-/// Mean of the emissive texture, or 1.
+/// Mean emission of a material: its emissive factor times the mean of its emissive texture.
 glm::vec3 mean_emission(const Scene& scene, const Material& material) {
     if (material.emissive.texture == kNone) {
         return material.emissive_factor;
@@ -35,7 +35,7 @@ glm::vec3 mean_emission(const Scene& scene, const Material& material) {
     return material.emissive_factor * glm::vec3(sum / std::max(1.0, static_cast<double>(image.rgba.size() / 4)));
 }
 
-/// Appends the triangles of one emissive instance; `flux` gets one weight per triangle.
+/// Appends the triangles of one emissive instance to `emitters`, and their fluxes to `flux`.
 void append_emitters(const Scene& scene, const glm::mat4& world_from_object, std::uint32_t instance,
                      std::vector<shared::EmitterRecord>& emitters, std::vector<double>& flux) {
     const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
@@ -77,7 +77,7 @@ double add_emitters(const Scene& scene, const ScenePose& pose, LightTables& tabl
     return total;
 }
 
-/// Mean luminance of the 3×3 texels around: not zero anywhere a bilinear lookup is not.
+/// Mean luminance of the 3×3 texels around (x, y). It is zero only where a bilinear lookup is zero, too.
 double spread_luminance(const Environment& environment, std::uint32_t x, std::uint32_t y) {
     double sum = 0.0;
     for (std::uint32_t dy = 0; dy < 3; ++dy) {
@@ -90,7 +90,7 @@ double spread_luminance(const Environment& environment, std::uint32_t x, std::ui
     return sum / 9.0;
 }
 
-/// Returns the mean radiance over the sphere.
+/// Adds the table of the environment. Returns its mean luminance over the sphere.
 double add_environment(const Environment& environment, LightTables& tables) {
     if (environment.pixels.empty()) {
         return luminance(environment.constant);

@@ -8,7 +8,7 @@
 
 namespace fieldcast::scene {
 
-/// What next event estimation draws from, and with which probabilities.
+/// Tables and probabilities from which next event estimation draws lights.
 struct LightTables {
     std::vector<shared::EmitterRecord> emitters;        ///< all triangles of emissive instances, instance by instance
     std::vector<std::uint32_t> first_emitter;           ///< per instance; kNoIndex: does not emit
@@ -19,8 +19,8 @@ struct LightTables {
     float probability_light = 0.0F;
 };
 
-/// Probabilities follow the square root of the emitted power, with a floor for every kind there is: the strongest
-/// light of a scene (often the sun) is not the one that matters everywhere.
+/// Probabilities are proportional to the square root of the emitted power, with a minimum for every kind of light in
+/// the scene. The strongest light (often the sun) does not dominate everywhere.
 LightTables make_light_tables(const Scene& scene, const ScenePose& pose, float scene_radius_m);
 
 /// Punctual lights as placed by `pose`.

@@ -14,15 +14,16 @@ namespace fieldcast::scene {
 /// Throws UserError "file: object: reason".
 [[noreturn]] void refuse(const std::string& file, const std::string& object, const std::string& reason);
 
-/// "node 12 'lamp'": how messages name an object. Names from files are shortened and freed of control characters.
+/// The name of an object in messages ("node 12 'lamp'"). Names from files are shortened, and control characters become
+/// question marks.
 std::string object_name(std::string_view kind, std::size_t index, std::string_view name = {});
 
-/// Counts what a file contains but the scene ignores; one line per kind, at most 32 kinds.
+/// Counts contents of a file that the scene ignores; one line per kind, at most 32 kinds.
 class LoadWarnings {
 public:
-    /// `what` is a claim ("skins are ignored"), `unit` what is counted ("node"); without unit there is no count.
+    /// `what` is a statement ("skins are ignored"), `unit` the counted object ("node"). Without unit there is no count.
     void add(const std::string& what, const std::string& unit = {});
-    /// "skins are ignored (3 nodes)", in alphabetical order.
+    /// Lines such as "skins are ignored (3 nodes)", in alphabetical order.
     std::vector<std::string> lines() const;
 
 private:

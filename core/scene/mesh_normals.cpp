@@ -9,8 +9,8 @@ namespace {
 
 constexpr glm::vec3 kUp{0.0F, 0.0F, 1.0F};
 
-/// Unit vector along `v`, in double because squares of tiny or huge floats leave their range; `fallback` without
-/// direction.
+/// Unit vector along `v`, or `fallback` if `v` is zero or not finite. Doubles are used because squares of tiny or huge
+/// floats leave the range of floats.
 glm::vec3 direction_of(const glm::dvec3& v, const glm::vec3& fallback) {
     const double length = glm::length(v);
     return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : fallback;

@@ -8,8 +8,8 @@ namespace fieldcast::scene {
 /// Gives every triangle its own three vertices and the normal of its plane. Degenerate triangles get +Z.
 void make_flat_normals(Mesh& mesh);
 
-/// Scales normals and tangents to unit length. A normal without direction is replaced by that of the triangles around
-/// it, else by +Z; a tangent without direction by any vector perpendicular to the normal.
+/// Scales normals and tangents to unit length. A zero normal becomes that of the adjacent triangles, or else +Z. A zero
+/// tangent becomes an arbitrary vector perpendicular to the normal.
 void normalise_frames(Mesh& mesh);
 
 } // namespace fieldcast::scene

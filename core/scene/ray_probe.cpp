@@ -73,8 +73,8 @@ void intersect(RTCScene scene, RTCRayHit& ray) {
 
 struct RayProbe::State {
     OwnedDevice device{rtcNewDevice(nullptr)};
-    std::vector<OwnedScene> meshes; ///< as in the scene; empty ones are not shown
-    std::vector<glm::mat3> world_from_object; ///< of directions, by instance
+    std::vector<OwnedScene> meshes; ///< indexed as in the scene; empty for meshes that are not shown
+    std::vector<glm::mat3> world_from_object; ///< transforms of directions, per instance
     OwnedScene scene;
 };
 
@@ -122,8 +122,8 @@ std::optional<ProbeHit> RayProbe::trace(const glm::vec3& from, const glm::vec3& 
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }
-    // Embree's normal is that of the object's space: bring the direction there. A mirroring transform turns triangles
-    // inside out, and glTF then counts the other side as the front.
+    // Embree's normal is in object space, so the direction is transformed there. A mirroring transform reverses the
+    // winding, and glTF then defines the other side as the front.
     const glm::mat3& world_from_object = state_->world_from_object[ray.hit.instID[0]];
     const glm::vec3 normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
     const glm::vec3 local = glm::inverse(world_from_object) * direction;

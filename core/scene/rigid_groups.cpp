@@ -16,7 +16,7 @@ glm::mat4 local_transform(const Node& node) {
     return glm::scale(translated * glm::mat4_cast(node.rotation), node.scale);
 }
 
-/// For every node the nearest one, itself or above, that an animation channel moves; kNone if it stands still.
+/// For every node, the nearest node that an animation channel moves: itself or an ancestor; kNone for static nodes.
 std::vector<std::uint32_t> movers(const Scene& scene) {
     std::vector<std::uint32_t> mover(scene.nodes.size(), kNone);
     for (const AnimationChannel& channel : scene.channels) {

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
 /// Decoded image, 8 bits per channel, RGBA, row 0 on top.
 struct Image {
-    std::string name; ///< for messages: file or "image 3"
+    std::string name; ///< file name or "image 3", for messages
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
     std::vector<std::uint8_t> rgba;
@@ -33,7 +33,7 @@ struct Texture {
     Wrap wrap_v = Wrap::kRepeat;
 };
 
-/// Use of a texture in a material: uv' = uv_matrix · (u, v, 1), two rows.
+/// Use of a texture in a material. Its coordinates are uv' = uv_matrix · (u, v, 1), where the matrix has two rows.
 struct TextureUse {
     std::uint32_t texture = kNone; ///< index into Scene::textures
     std::uint32_t uv_set = 0;      ///< 0 or 1
@@ -66,7 +66,7 @@ struct Material {
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions; ///< metres, object space
-    std::vector<glm::vec3> normals;   ///< unit length; always present (flat ones are made when the file has none)
+    std::vector<glm::vec3> normals;   ///< unit length; always present (flat normals if the file has none)
     std::vector<glm::vec4> tangents;  ///< xyz unit, w = ±1; may be empty
     std::vector<glm::vec2> uv0;
     std::vector<glm::vec2> uv1;
@@ -86,7 +86,7 @@ struct Node {
     bool is_animated = false;        ///< this node or an ancestor has an animation channel
 };
 
-/// A mesh placed in the world by a node. The index into Scene::instances is the instance of visibility and wire ids.
+/// A mesh placed by a node. Visibility and wire ids store the index into Scene::instances.
 struct Instance {
     std::uint32_t node = 0;
     std::uint32_t mesh = 0;
@@ -101,13 +101,14 @@ struct Light {
     std::uint32_t node = 0;
     glm::vec3 intensity{1.0F}; ///< colour × intensity; W/m² (directional) or W/sr
     float range_m = std::numeric_limits<float>::infinity();
-    float inner_cone_rad = 0.0F; ///< half angles
+    float inner_cone_rad = 0.0F; ///< half angles of the cone
     float outer_cone_rad = 0.785398F;
     float angular_radius_rad = 0.0F; ///< directional: 0.2665° unless extras.angular_radius_deg says otherwise
 };
 
+/// A perspective camera of the file, or one that add_camera() added.
 struct CameraNode {
-    std::string name; ///< of the node
+    std::string name; ///< name of the node
     std::uint32_t node = 0;
     float fovy_rad = 0.785398F;
     std::optional<float> spacing_m; ///< node extras.fieldcast.spacing_m: recommended spacing of the lattice
@@ -149,7 +150,7 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<CameraNode> cameras;
     std::vector<AnimationChannel> channels;
-    double duration_s = 0.0; ///< of the longest animation; 0: nothing moves
+    double duration_s = 0.0; ///< duration of the longest animation; 0: no animation
     Environment environment;
     bool has_studio = false; ///< `environment` is the studio (core/scene/studio.h)
     SceneHash hash{};
@@ -164,11 +165,11 @@ struct ScenePose {
 
 ScenePose pose_scene(const Scene& scene, std::int64_t time_ns);
 
-/// How often the animations have started over at `time_ns`; when it changes between two frames, the second is a cut.
-/// The end of a loop belongs to the loop: at time `duration_s` the last keys are shown.
+/// Number of times the animations have restarted by `time_ns`. If it differs between two frames, the second is a cut.
+/// The end of a loop belongs to the loop: the last keys are shown at time `duration_s`.
 std::int64_t loop_index(const Scene& scene, std::int64_t time_ns);
 
-/// The camera called `name`; or without a name: "LightField", else the first one. Null if there is none.
+/// The camera called `name`. Without a name: the camera "LightField", else the first one. Null if there is none.
 const CameraNode* find_camera(const Scene& scene, const std::string& name = {});
 
 /// Rigid camera pose: the node's world transform without scale.

@@ -25,7 +25,7 @@ Box bounds(const Mesh& mesh) {
     return box;
 }
 
-/// False for NaN, too.
+/// Whether all coordinates are within kMaxExtent_m; false for NaN.
 bool is_near(const glm::vec3& v) {
     const glm::vec3 a = glm::abs(v);
     return a.x <= kMaxExtent_m && a.y <= kMaxExtent_m && a.z <= kMaxExtent_m;
@@ -44,10 +44,10 @@ bool is_near(const glm::mat4& matrix, const Box& box) {
 
 [[noreturn]] void refuse_node(const Scene& scene, std::uint32_t node) {
     refuse(scene.name, object_name("node", node, scene.nodes[node].name),
-           "reaches farther than 1e9 m from the origin, or its transform is not finite");
+           "reaches farther than 1e9 m from the origin, or its transform is not finite; move or scale it");
 }
 
-/// `only_animated`: the others have been checked before.
+/// `only_animated`: checks animated nodes only; the others have been checked before.
 void check_pose(const Scene& scene, const ScenePose& pose, const std::vector<Box>& boxes, bool only_animated) {
     for (std::uint32_t i = 0; i < scene.nodes.size(); ++i) {
         const glm::mat4& matrix = pose.world_from_node[i];
@@ -68,7 +68,7 @@ void check_pose(const Scene& scene, const ScenePose& pose, const std::vector<Box
 
 void check_extent(const Scene& scene) {
     if (scene.instances.empty()) {
-        refuse(scene.name, "scene", "shows no triangles");
+        refuse(scene.name, "scene", "shows no triangles; at least one node needs a mesh with triangles");
     }
     std::vector<Box> boxes;
     boxes.reserve(scene.meshes.size());

@@ -5,11 +5,11 @@
 
 namespace fieldcast::scene {
 
-/// How far from the origin anything may be. Beyond, single precision has no use and soon no range.
+/// Largest coordinate of anything in a scene, metres. Beyond it, single precision is too coarse and soon overflows.
 inline constexpr float kMaxExtent_m = 1e9F;
 
-/// Throws UserError unless all nodes and all instances lie within `kMaxExtent_m`, over the whole animation as far as a
-/// number of samples tells, and at least one triangle is shown. Finite numbers may still multiply to infinity.
+/// Throws UserError unless all nodes and instances lie within `kMaxExtent_m`, at samples of the whole animation, and at
+/// least one triangle is shown. The check is needed because products of finite numbers may be infinite.
 void check_extent(const Scene& scene);
 
 } // namespace fieldcast::scene

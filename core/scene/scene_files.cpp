@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether `file` lies in `folder`; both canonical.
+/// Whether `file` lies in `folder`. Both paths must be canonical.
 bool is_inside(const fs::path& folder, const fs::path& file) {
     const auto [folder_end, file_rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
     return folder_end == folder.end() && file_rest != file.end();
@@ -37,7 +37,8 @@ SceneFileReader::SceneFileReader(const fs::path& file, std::uint64_t max_bytes) 
         refuse(file.string(), "file", "cannot open: " + (error ? error.message() : "not a file"));
     }
     if (const auto checked = check_relative_path(files_.main); !checked || *checked != files_.main) {
-        refuse(file.string(), "file", checked ? "unusable file name" : checked.error().message);
+        refuse(file.string(), "file",
+               checked ? "the file name cannot be used in a bundle; rename it" : checked.error().message);
     }
     add(files_.main, file, "file");
 }
@@ -56,7 +57,7 @@ std::span<const std::byte> SceneFileReader::read_uri(const std::string& uri, con
         refuse(files_.main, object, "cannot open '" + *path + "': " + error.message());
     }
     if (!is_inside(files_.folder, file)) {
-        refuse(files_.main, object, "'" + *path + "' leaves the scene's folder");
+        refuse(files_.main, object, "'" + *path + "' leaves the scene's folder; put the file into it");
     }
     add(*path, file, object);
     return files_.bytes.at(*path);
@@ -70,7 +71,7 @@ void add_studio(SceneFiles& files) {
 void SceneFileReader::read_environment(const fs::path& file) {
     files_.environment = std::string(kEnvironmentStem) + lower_case(file.extension().string());
     if (!check_relative_path(files_.environment) || files_.bytes.contains(files_.environment)) {
-        refuse(file.filename().string(), "environment", "unusable file name");
+        refuse(file.filename().string(), "environment", "the file name cannot be used in a bundle; rename it");
     }
     add(files_.environment, file, "environment");
 }
@@ -84,7 +85,7 @@ void SceneFileReader::add(const std::string& path, const fs::path& file, const s
         refuse(files_.main, object, "cannot open '" + path + "': " + (error ? error.message() : "not a regular file"));
     }
     if (size > bytes_left_) {
-        refuse(files_.main, object, "'" + path + "' exceeds the limit on the size of all files");
+        refuse(files_.main, object, "'" + path + "' exceeds the limit on the size of all files; use smaller files");
     }
     std::vector<std::byte> bytes(size);
     std::ifstream stream(file, std::ios::binary);

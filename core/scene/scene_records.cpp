@@ -9,7 +9,7 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Octahedral snorm 2x16, as lib/packing.glsl.
+/// Packs a normal as octahedral snorm 2x16, as in lib/packing.glsl.
 std::uint32_t pack_normal(const glm::vec3& n) {
     glm::vec2 p = glm::vec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
     if (n.z < 0.0F) {
@@ -81,7 +81,7 @@ shared::MaterialRecord make_material(const Scene& scene, const TextureArrays& te
     return record;
 }
 
-/// Sphere around the box of all placed vertices.
+/// Sets the sphere around the box of all placed vertices.
 void bound_scene(const Scene& scene, const ScenePose& pose, SceneRecords& records) {
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(-std::numeric_limits<float>::max());

@@ -19,7 +19,7 @@ struct SceneRecords {
 
 SceneRecords make_scene_records(const Scene& scene, const ScenePose& pose, const TextureArrays& textures);
 
-/// Instances as placed by `pose`, with where they were in `previous`.
+/// Instances with their transforms in `pose` and in `previous`.
 std::vector<shared::InstanceRecord> make_instance_records(const Scene& scene, const SceneRecords& records,
                                                           const LightTables& lights, const ScenePose& pose,
                                                           const ScenePose& previous);

@@ -15,11 +15,11 @@ constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 32;
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// A soft light.
+/// A light whose radiance falls off around its direction.
 struct Softbox {
     float azimuth_deg = 0.0F; ///< from +Z towards +X
     float elevation_deg = 0.0F;
-    float radius_deg = 0.0F; ///< to half of its radiance
+    float radius_deg = 0.0F; ///< angle at which it has half of its radiance
     float radiance = 0.0F;
 };
 
@@ -32,7 +32,7 @@ glm::vec3 direction_of(float azimuth_deg, float elevation_deg) {
     return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation)};
 }
 
-/// Of the wall, floor and ceiling, and the lights on them.
+/// Radiance of walls, floor and ceiling, and of the lights on them.
 float radiance_from(const glm::vec3& direction) {
     float radiance = 0.30F + 0.22F * direction.y; // the ceiling is lighter than the floor
     for (const Softbox& light : kSoftboxes) {
@@ -43,7 +43,7 @@ float radiance_from(const glm::vec3& direction) {
     return radiance;
 }
 
-/// −Z at u = 0.5, +X at u = 0.75, +Y at v = 0.
+/// Direction of a pixel's centre: −Z at u = 0.5, +X at u = 0.75, +Y at v = 0.
 glm::vec3 direction_at(std::uint32_t col, std::uint32_t row) {
     const float phi = 2.0F * kPi * ((static_cast<float>(col) + 0.5F) / kWidth - 0.5F);
     const float theta = kPi * (static_cast<float>(row) + 0.5F) / kHeight;
@@ -76,7 +76,7 @@ std::vector<std::byte> studio_file() {
     std::vector<std::byte> file(head.size());
     std::ranges::transform(head, file.begin(), [](char c) { return static_cast<std::byte>(c); });
     for (std::uint32_t row = 0; row < kHeight; ++row) {
-        // A scanline in the run-length form, channel by channel, without runs: the flat form is ambiguous.
+        // Run-length encoded scanline, channel by channel, without runs. The flat form would be ambiguous.
         std::array<std::array<std::byte, kWidth>, 4> channels{};
         for (std::uint32_t col = 0; col < kWidth; ++col) {
             const Grey grey = grey_at(col, row);
@@ -87,7 +87,7 @@ std::vector<std::byte> studio_file() {
             file.push_back(byte);
         }
         for (const auto& channel : channels) {
-            file.push_back(std::byte{kWidth}); // so many literal bytes
+            file.push_back(std::byte{kWidth}); // number of literal bytes
             file.insert(file.end(), channel.begin(), channel.end());
         }
     }

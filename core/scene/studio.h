@@ -7,19 +7,19 @@
 #include <string_view>
 #include <vector>
 
-// An environment for files that bring no light: a grey room. A soft key light stands at the right of the front (+Z), a fill
-// light at the left, a rim light behind.
+// An environment for files without light: a grey room. It has a soft key light at the right of the front (+Z), a fill
+// light at the left, and a rim light behind.
 namespace fieldcast::scene {
 
 inline constexpr std::string_view kStudioExtension = ".hdr";
 
-/// Whether anything in the file gives light: a lamp, or a material that emits.
+/// Whether the scene has a punctual light or an emissive material.
 bool has_light(const Scene& scene);
 
-/// The studio as a Radiance file (RGBE, 64×32, equirectangular), as it travels in bundles. Always the same bytes.
+/// The studio as a Radiance file (RGBE, 64×32, equirectangular), as bundles contain it. The bytes are always the same.
 std::vector<std::byte> studio_file();
 
-/// The same, as it is read from that file.
+/// The studio as decoded from that file, bit for bit.
 Environment studio_environment();
 
 } // namespace fieldcast::scene

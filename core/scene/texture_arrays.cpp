@@ -17,7 +17,7 @@ std::uint32_t class_side(const Image& image) {
     return std::bit_ceil(std::max(image.width_px, image.height_px));
 }
 
-/// Which images are read as colour (sRGB) or as data (linear); an image can be both.
+/// The images that materials read as colour (sRGB) or as data (linear). An image can be in both sets.
 std::set<std::uint32_t> images_used(const Scene& scene, bool srgb) {
     std::set<std::uint32_t> used;
     const auto add = [&](const TextureUse& use) {
@@ -38,7 +38,7 @@ std::set<std::uint32_t> images_used(const Scene& scene, bool srgb) {
     return used;
 }
 
-/// Bilinear resampling to a square of `side` pixels, repeating at the border.
+/// Resamples an image bilinearly to a square of `side` pixels; the image repeats at the border.
 std::vector<std::byte> resampled(const Image& image, std::uint32_t side) {
     std::vector<std::byte> out(static_cast<std::size_t>(side) * side * 4);
     const auto channel = [&](std::uint32_t x, std::uint32_t y, std::uint32_t c) {
@@ -78,7 +78,7 @@ TextureArrays::TextureArrays(const gpu::Device& device, const Scene& scene) : sc
     }
 }
 
-// The largest sizes get a class of their own; the last class takes everything smaller.
+// Each of the largest sizes has its own class; the last class also takes all smaller images.
 void TextureArrays::plan(const Scene& scene, bool srgb) {
     const std::set<std::uint32_t> used = images_used(scene, srgb);
     std::set<std::uint32_t, std::greater<>> sides;
@@ -116,7 +116,9 @@ void TextureArrays::upload(const gpu::Device& device, const Scene& scene, std::u
     const std::uint32_t side = sides_[array];
     if (side > device.info().max_image_side || images_[array].size() > device.info().max_image_layers) {
         throw UserError(scene.name + ": " + std::to_string(images_[array].size()) + " images of " +
-                        std::to_string(side) + " pixels: more or larger than this device can hold in one array");
+                        std::to_string(side) + " pixels a side do not fit into one array of " + device.info().name +
+                        " (at most " + std::to_string(device.info().max_image_layers) + " images of " +
+                        std::to_string(device.info().max_image_side) + " pixels); use fewer or smaller textures");
     }
     resized.reserve(images_[array].size());
     for (const std::uint32_t index : images_[array]) {

@@ -9,7 +9,7 @@
 
 namespace fieldcast::scene {
 
-/// Where a texture lies: array of its size class and colour space, layer in it.
+/// Location of a texture: the array of its size class and colour space, and the layer in it.
 struct TexturePlace {
     std::uint32_t array = 0;
     std::uint32_t layer = 0;
@@ -17,7 +17,7 @@ struct TexturePlace {
 };
 
 /// All images of a scene in at most kTextureArrays square 2D arrays, so that no kernel needs descriptor indexing.
-/// Arrays 0 … 3 are sRGB, 4 … 7 linear. Images whose sides are not those of a size class are resampled up.
+/// Arrays 0 … 3 are sRGB, 4 … 7 linear. Images that do not have the size of a class are resampled to a larger one.
 class TextureArrays {
 public:
     /// Throws UserError if an image exceeds the device's limits.

@@ -35,7 +35,7 @@ Decoded<std::string> decode_percent(std::string_view text) {
         const auto high = i + 2 < text.size() ? hex_digit(text[i + 1]) : std::nullopt;
         const auto low = i + 2 < text.size() ? hex_digit(text[i + 2]) : std::nullopt;
         if (!high || !low) {
-            return decode_error("broken percent-encoding");
+            return decode_error("percent-encoding is broken: '%' needs two hexadecimal digits");
         }
         out.push_back(static_cast<char>(*high << 4U | *low));
         i += 2;
@@ -70,7 +70,7 @@ Decoded<std::vector<std::byte>> decode_base64(std::string_view text) {
     for (const char c : text) {
         const auto digit = base64_digit(c);
         if (!digit) {
-            return decode_error("not base64");
+            return decode_error("data is not base64");
         }
         bits = (bits << 6U | *digit) & 0xFFFFFFU;
         bit_count += 6;
@@ -96,7 +96,7 @@ bool is_data_uri(std::string_view uri) {
 Decoded<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!is_data_uri(uri) || comma == std::string_view::npos) {
-        return decode_error("broken data URI");
+        return decode_error("data URI is broken: it needs a comma before its data");
     }
     if (uri.substr(0, comma).ends_with(";base64")) {
         return decode_base64(uri.substr(comma + 1));
@@ -109,16 +109,16 @@ Decoded<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
 
 Decoded<std::string> check_relative_path(std::string_view path) {
     if (path.empty() || path.size() > kMaxPath) {
-        return decode_error(path.empty() ? "path is empty" : "path is too long");
+        return decode_error(path.empty() ? "path is empty" : "path is too long: at most 1024 bytes");
     }
     if (path.front() == '/' || path.find('\\') != std::string_view::npos) {
-        return decode_error("absolute path or backslash is not allowed");
+        return decode_error("absolute path or backslash is not allowed; use a relative path with '/'");
     }
     if (has_scheme(path)) {
-        return decode_error("URI with a scheme is not allowed");
+        return decode_error("URI with a scheme is not allowed; use a relative path");
     }
     if (std::any_of(path.begin(), path.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; })) {
-        return decode_error("control character in path");
+        return decode_error("path contains a control character");
     }
     std::string out;
     for (std::size_t begin = 0; begin <= path.size();) {
@@ -129,21 +129,21 @@ Decoded<std::string> check_relative_path(std::string_view path) {
             return decode_error("path leaves the scene's folder ('..')");
         }
         if (segment.size() > kMaxSegment) {
-            return decode_error("path is too long");
+            return decode_error("path is too long: at most 255 bytes per file or folder name");
         }
         if (!segment.empty() && segment != ".") {
             out.append(out.empty() ? 0 : 1, '/').append(segment);
         }
     }
-    if (has_scheme(out)) { // "./c:a": fine as a path, but not in its shortest form
-        return decode_error("URI with a scheme is not allowed");
+    if (has_scheme(out)) { // "./c:a" is a valid path, but its shortest form is not
+        return decode_error("URI with a scheme is not allowed; use a relative path");
     }
     return out.empty() ? Decoded<std::string>(decode_error("path names no file")) : Decoded<std::string>(out);
 }
 
 Decoded<std::string> path_of_uri(std::string_view uri) {
     if (has_scheme(uri)) {
-        return decode_error("URI with a scheme is not allowed");
+        return decode_error("URI with a scheme is not allowed; use a relative path");
     }
     return decode_percent(uri).and_then([](const std::string& path) { return check_relative_path(path); });
 }

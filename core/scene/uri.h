@@ -15,7 +15,7 @@ bool is_data_uri(std::string_view uri);
 /// Payload of a `data:` URI, base64 or percent-encoded.
 Decoded<std::vector<std::byte>> decode_data_uri(std::string_view uri);
 
-/// Checks a path that came from outside and returns it without empty and "." segments, '/' separated.
+/// Checks an untrusted path and returns it without empty and "." segments, '/' separated.
 /// Refused: absolute paths, "..", schemes ("file:", "c:"), backslashes, control characters, overlong names.
 Decoded<std::string> check_relative_path(std::string_view path);
 

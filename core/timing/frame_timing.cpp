@@ -8,7 +8,7 @@ namespace fieldcast::timing {
 
 namespace {
 
-// Clocks count from boot: what is beyond 70 years comes from somebody who lies, and sums must not overflow.
+// Clocks count from boot, so a time beyond 70 years is implausible. The limit keeps sums from overflowing.
 constexpr std::int64_t kLatestNs = INT64_MAX / 4;
 
 } // namespace

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-// What is known about when a frame was where. All times of a record are nanoseconds of one steady clock, that of the
-// process which writes it; 0: unknown, or never.
+// Timing records of frames. All times of a record are nanoseconds of one steady clock, that of the process which writes
+// it; 0: unknown, or never.
 namespace fieldcast::timing {
 
-/// How a frame of a channel was made.
+/// Times of the production of a channel's frame.
 struct MadeFrame {
     std::string channel;
     std::uint64_t frame_id = 0;
@@ -25,18 +25,18 @@ struct MadeFrame {
     std::vector<StageTime> stages; ///< of rendering, on the device, in their order
 };
 
-/// What became of a frame at its client, as far as is known.
+/// Fate of a frame at its client, as far as it is known.
 enum class Outcome : std::uint8_t {
-    kUnacknowledged, ///< nothing was heard of it
-    kDecoded,        ///< whether it was shown is not known
+    kUnacknowledged, ///< the client has not acknowledged it
+    kDecoded,        ///< it is unknown whether it was shown
     kShown,
     kSuperseded, ///< complete, but a newer one was complete before it could be shown
     kFailed,     ///< the client could not decode it
-    kAborted,    ///< not sent to its end
+    kAborted,    ///< sending it was stopped early
 };
 std::string_view to_text(Outcome outcome);
 
-/// The way of a frame to one client.
+/// Times of the delivery of a frame to one client.
 struct DeliveredFrame {
     MadeFrame made;
     std::uint64_t client = 0; ///< number of the session
@@ -51,10 +51,11 @@ struct DeliveredFrame {
     std::int64_t rendered_ns = 0; ///< mode SCENE: views made
     std::int64_t shown_ns = 0;
     std::int64_t clock_round_trip_ns =
-        0; ///< times of the other side are wrong by half of it at most; 0: they are unset
+        0; ///< the other side's times are wrong by at most half of it; 0: they are unset
 };
 
-/// A time of another clock on ours, which is `offset_ns` ahead of it. 0: unknown, or no time that a clock can show.
+/// Converts a time of another clock to our clock, which is `offset_ns` ahead of it. Returns 0 if the time is unknown or
+/// no clock can show it.
 std::int64_t on_our_clock(std::int64_t time_ns, std::int64_t offset_ns);
 
 } // namespace fieldcast::timing

@@ -42,7 +42,7 @@ std::string known(std::int64_t time_ns, const char* unknown) {
     return time_ns == 0 ? unknown : std::to_string(time_ns);
 }
 
-/// A field of RFC 4180: in quotes, and its own quotes twice.
+/// A field of RFC 4180: in quotes, with its own quotes doubled.
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {

@@ -15,7 +15,7 @@ LatticePosition base_position(LatticePosition position) {
 std::uint32_t base_part(const ViewGrid& grid) {
     const auto positions = lattice_positions(grid);
     const auto found = std::ranges::find(positions, base_position(positions.front()));
-    FC_ASSERT(found != positions.end(), "a grid has the view nearest to its source");
+    FC_ASSERT(found != positions.end(), "every grid contains its base view");
     return static_cast<std::uint32_t>(found - positions.begin());
 }
 

@@ -11,19 +11,19 @@
 
 namespace fieldcast::wire {
 
-/// The view from which the one at `position` may be predicted, in the same frame: the one nearest to the source of
-/// those that are whole steps away, on half steps above and left of it. Every grid that shows `position` shows it, too,
-/// so that clients with different grids share predicted views.
+/// Position of the base view, from which the view at `position` may be predicted in the same frame. Of the positions
+/// whole steps away from `position`, it is the one nearest to the source; on half steps, the one above and left of the
+/// source. Every grid with `position` has the base view, too, so clients with different grids share predicted views.
 LatticePosition base_position(LatticePosition position);
 
-/// The part of a frame of views that its other parts may be predicted from.
+/// Part number of the base view in a frame with the views of `grid`. Other parts may be predicted from it.
 std::uint32_t base_part(const ViewGrid& grid);
 
-/// What a receiver has of the base view of a frame, still encoded: memory of one encoded view.
+/// The received strips of a frame's base view, still encoded. They take the memory of one encoded view.
 class BaseStrips {
 public:
     void keep(codec::RowBand band, std::span<const std::byte> strip);
-    std::span<const std::byte> find(codec::RowBand band) const; ///< empty: not there (yet)
+    std::span<const std::byte> find(codec::RowBand band) const; ///< empty: not received (yet)
 
 private:
     struct Kept {

@@ -27,7 +27,7 @@ void append_field(std::string& out, int number, std::uint64_t bytes) {
     append_varint(out, bytes);
 }
 
-/// A ServerMessage with that chunk, ending where `payload_bytes` bytes of payload follow.
+/// The serialised ServerMessage of `chunk`, up to the position at which `payload_bytes` bytes of payload follow.
 std::string make_head(const v1::FrameChunk& chunk, std::size_t payload_bytes) {
     std::string inner = chunk.SerializeAsString();
     if (payload_bytes > 0) {
@@ -48,7 +48,7 @@ v1::FrameChunk next_chunk(const WireFrame& frame) {
 
 void append_strip(WireFrame& frame, std::uint32_t part, const EncodedStrip& strip, const ChunkOptions& options) {
     const StripBytes& form = options.has_key_frame ? strip.best : strip.alone;
-    FC_ASSERT(form.bytes != nullptr, "a strip that stands alone was not encoded");
+    FC_ASSERT(form.bytes != nullptr, "clients without the key frame need strips that stand alone");
     const std::span<const std::byte> bytes(*form.bytes);
     const std::uint32_t chunk_bytes = options.chunk_bytes;
     for (std::size_t offset = 0; offset < bytes.size(); offset += chunk_bytes) {
@@ -105,7 +105,7 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
     std::vector<const EncodedPlane*> planes;
     for (const PlaneChoice choice : choices) {
         const EncodedPlane* plane = source.find(choice);
-        FC_ASSERT(plane != nullptr, "a plane was chosen that was not encoded");
+        FC_ASSERT(plane != nullptr, "every chosen plane was encoded");
         planes.push_back(plane);
         v1::PlaneHeader& entry = *message.mutable_planes()->add_planes();
         entry.set_semantic(to_proto(plane->semantic));
@@ -115,7 +115,7 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
         entry.set_height_px(plane->height_px);
     }
     if (std::ranges::none_of(choices, is_residual, &PlaneChoice::semantic)) {
-        message.clear_residual(); // of use to nobody else
+        message.clear_residual(); // only planes of the residual layer need it
     }
     append_header(frame, std::move(message));
     for (std::uint32_t part = 0; part < planes.size(); ++part) {
@@ -126,7 +126,7 @@ WireFrame source_chunks(const EncodedSource& source, std::span<const PlaneChoice
 
 WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const ChunkOptions& options) {
     const ViewFormat& format = views.format;
-    FC_ASSERT(grid.geometry == format.geometry, "grid of another lattice");
+    FC_ASSERT(grid.geometry == format.geometry, "the grid has the lattice geometry of the views");
     v1::FrameHeader message;
     WireFrame frame = begin_frame(views.header, views.key_frame_id, options, message);
     const ViewSet set{grid, format.width_px, format.height_px, format.fovy_rad};
@@ -136,11 +136,11 @@ WireFrame view_chunks(const EncodedViews& views, const ViewGrid& grid, const Chu
     std::vector<const EncodedView*> parts;
     for (const LatticePosition position : lattice_positions(grid)) {
         const auto view = views.views.find(position);
-        FC_ASSERT(view != views.views.end(), "a view was asked for that was not encoded");
+        FC_ASSERT(view != views.views.end(), "every view of the grid was encoded");
         parts.push_back(&view->second);
         frame.discards.push_back(view->second.discards);
     }
-    const std::uint32_t base = base_part(grid); // first: others may be predicted from it
+    const std::uint32_t base = base_part(grid); // sent first, because others may be predicted from it
     append_plane(frame, base, parts[base]->image, options);
     for (std::uint32_t part = 0; part < parts.size(); ++part) {
         if (part != base) {

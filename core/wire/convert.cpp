@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras, grids and view sets; convert_header.cpp has frame headers, convert_settings.cpp the rest.
+// Cameras, grids and view sets. convert_header.cpp has frame headers, convert_settings.cpp everything else.
 #include "core/wire/convert.h"
 
 #include <cmath>
@@ -77,7 +77,7 @@ Decoded<Camera> from_proto(const v1::PinholeCamera& message) {
     camera.focal_px = message.focal_px();
     camera.principal_px = {message.principal_x_px(), message.principal_y_px()};
     if (!(camera.focal_px > 0.0F && camera.focal_px <= kMaxPixels)) {
-        return decode_error("camera.focal_px: must be above 0, at most 1e6");
+        return decode_error("camera.focal_px: must be above 0 and at most 1e6");
     }
     if (!(std::abs(camera.principal_px.x) <= kMaxPixels && std::abs(camera.principal_px.y) <= kMaxPixels)) {
         return decode_error("camera.principal_px: not finite or beyond 1e6");
@@ -135,7 +135,7 @@ Decoded<ViewGrid> from_proto(const v1::Grid& message, const LatticeGeometry& cha
     case v1::ANCHOR_CENTRE:
         grid.anchor = Anchor::kCentre;
         break;
-    default: // any number may stand in a message
+    default: // messages may hold any number
         return decode_error("grid.anchor: unknown value");
     }
     if (const auto problem = grid_problem(grid)) {
@@ -154,7 +154,7 @@ void to_proto(const ViewSet& set, v1::ViewSet& message) {
 Decoded<ViewSet> from_proto(const v1::ViewSet& message) {
     const v1::Grid& grid_message = message.grid();
     if (!grid_message.has_spacing_x_m() || !grid_message.has_spacing_y_m() || !grid_message.has_convergence_m()) {
-        return decode_error("view_set.grid: spacing and convergence must be set here");
+        return decode_error("view_set.grid: spacing and convergence must be set");
     }
     const auto grid = from_proto(grid_message, LatticeGeometry{});
     if (!grid) {

@@ -2,27 +2,27 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/codec/plane_codec.h"
 #include "core/lightfield/views.h"
-#include "core/wire/chunks.h"
-#include "core/wire/frame_assembler.h"
+#include "core/wire/server_times.h"
+#include "core/wire/view_set.h"
 
 #include "fieldcast/v1/frame.pb.h"
 #include "fieldcast/v1/types.pb.h"
 
 #include <google/protobuf/repeated_field.h>
+#include <optional>
 
-// Protobuf messages <-> our types, in this one place. `from_proto` checks every field: enums known, numbers finite and
-// in the range that the proto file states. Errors name the field.
+// The only conversions between Protobuf messages and our types. `from_proto` checks every field: enumerators must be
+// known, and numbers finite and within the range that the proto file states. Errors name the field.
 namespace fieldcast::wire {
 
-/// Frame id excepted: it stands in the chunk.
+/// Writes all but the frame id, which is a field of the chunk.
 void to_proto(const FrameHeader& header, v1::FrameHeader& message);
 Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t frame_id);
 
 void to_proto(const Camera& camera, v1::PinholeCamera& message);
 Decoded<Camera> from_proto(const v1::PinholeCamera& message);
-/// Of 12 values, as PinholeCamera.world_from_camera.
+/// The pose in 12 values, ordered as in PinholeCamera.world_from_camera. An error unless it is rigid and within 1e9 m.
 Decoded<glm::mat4> pose_from_proto(const google::protobuf::RepeatedField<float>& values);
 
 void to_proto(const GuardBand& band, v1::GuardBand& message);
@@ -31,9 +31,9 @@ Decoded<GuardBand> from_proto(const v1::GuardBand& message);
 void to_proto(const RenderSettings& settings, v1::RenderSettings& message);
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message);
 
-/// Writes every field; parallel cameras as convergence 0.
+/// Writes every field. The convergence of parallel cameras is written as 0.
 void to_proto(const ViewGrid& grid, v1::Grid& message);
-/// Unset fields are taken from `channel`. The result has no grid_problem().
+/// Takes unset fields from `channel`. The result has no grid_problem().
 Decoded<ViewGrid> from_proto(const v1::Grid& message, const LatticeGeometry& channel);
 
 void to_proto(const ViewSet& set, v1::ViewSet& message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame headers; cameras, grids and settings in them are read by convert.cpp and convert_settings.cpp.
+// Frame headers. convert.cpp and convert_settings.cpp read the cameras, grids and settings in them.
 #include "core/wire/convert.h"
 
 #include "core/base/printable.h"
@@ -25,14 +25,14 @@ Decoded<std::vector<StageTime>> stages_from_proto(const v1::FrameHeader& message
     std::vector<StageTime> stages;
     for (const v1::StageTime& entry : message.render_times()) {
         if (entry.stage().size() > kMaxStageName || !std::isfinite(entry.ms()) || entry.ms() < 0.0) {
-            return decode_error("header.render_times: name too long or time not a number >= 0");
+            return decode_error("header.render_times: a name is too long, or a time is not a number >= 0");
         }
         stages.push_back({printable(entry.stage()), entry.ms()});
     }
     return stages;
 }
 
-/// Of sources, or of views that the residual layer is for.
+/// `Message` is SourceSet, or ResidualLayer with the positions of its views.
 template <class Message>
 void lattice_to_proto(const std::vector<LatticePosition>& positions, const LatticeGeometry& geometry,
                       Message& message) {
@@ -58,7 +58,7 @@ Decoded<void> sources_from_proto(const v1::SourceSet& message, FrameHeader& head
         const bool is_near = std::abs(std::int64_t{position.row_halves}) <= kMaxHalves &&
                              std::abs(std::int64_t{position.col_halves}) <= kMaxHalves;
         if (!is_near || std::ranges::find(header.source_positions, position) != header.source_positions.end()) {
-            return decode_error("header.sources.positions: twice the same, or beyond 144 half steps");
+            return decode_error("header.sources.positions: a position is there twice, or beyond 144 half steps");
         }
         header.source_positions.push_back(position);
     }
@@ -74,7 +74,8 @@ Decoded<void> sources_from_proto(const v1::SourceSet& message, FrameHeader& head
     return {};
 }
 
-/// Sizes of planes follow from the tiles, so their number is bounded before any is kept.
+/// The tile numbers of a residual layer, ascending. Sizes of planes follow from their count, so it is checked before
+/// any number is kept.
 Decoded<std::vector<std::uint32_t>> tiles_from_proto(const v1::ResidualLayer& message, std::uint64_t tile_count) {
     if (static_cast<std::uint64_t>(message.gaps_size()) > std::min<std::uint64_t>(max_residual_tiles(), tile_count)) {
         return decode_error("header.residual.gaps: " + std::to_string(message.gaps_size()) + " tiles, at most " +
@@ -104,7 +105,7 @@ void residual_to_proto(const ResidualLayer& residual, v1::ResidualLayer& message
     }
 }
 
-/// Positions and geometry are read as those of sources are.
+/// Reads positions and geometry with the checks for those of sources.
 Decoded<ResidualLayer> residual_from_proto(const v1::ResidualLayer& message, const Camera& source) {
     if (message.positions_size() > static_cast<int>(kMaxResidualViews)) {
         return decode_error("header.residual: " + std::to_string(message.positions_size()) + " views, at most 4");
@@ -143,7 +144,7 @@ std::optional<AppliedPose> applied_pose_from_proto(const v1::FrameHeader& messag
                : std::nullopt;
 }
 
-/// What the planes show and how large they are: cameras, layers, residual. Sizes are bounded here.
+/// Reads cameras, layers and the residual layer, from which the sizes of planes follow, and checks those sizes.
 Decoded<void> pictures_from_proto(const v1::FrameHeader& message, FrameHeader& header) {
     const auto source = from_proto(message.source());
     if (!source) {
@@ -217,7 +218,7 @@ Decoded<FrameHeader> from_proto(const v1::FrameHeader& message, std::uint64_t fr
     header.noise_frame = message.noise_frame();
     header.still_frames = message.still_frames();
     if (message.has_applied_pose() && message.applied_pose().lease() == 0) {
-        return decode_error("header.applied_pose.lease: 0, expected more");
+        return decode_error("header.applied_pose.lease: 0, must be above 0");
     }
     header.applied_pose = applied_pose_from_proto(message);
     if (const auto read = pictures_from_proto(message, header); !read) {

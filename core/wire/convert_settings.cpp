@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RenderSettings and small values; convert.cpp has cameras, grids and headers.
+// RenderSettings and small values. convert.cpp has cameras, grids and view sets, convert_header.cpp frame headers.
 #include "core/wire/convert.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint32_t kMaxSamplesPerPixel = 65536;
 constexpr std::uint32_t kMaxBounces = 256;
 
-/// Numbers of our enumerations are those of the messages (tests/wire/vocabulary_test.cpp).
+/// The value with that number, or nothing. Our enumerations and those of the messages have the same numbers
+/// (tests/wire/vocabulary_test.cpp).
 template <class Enum> std::optional<Enum> known(int number) {
     return number < 0 ? std::nullopt : from_number<Enum>(static_cast<std::uint64_t>(number));
 }
@@ -35,12 +36,12 @@ std::optional<ToneMap> tone_map_from_proto(int number) {
         return ToneMap::kClampSrgb;
     case v1::TONE_MAP_ACES:
         return ToneMap::kAces;
-    default: // any number may stand in a message
+    default: // messages may hold any number
         return std::nullopt;
     }
 }
 
-/// A float of the settings and the range it must lie in; NaN lies in none.
+/// A float of the settings and its range. NaN is in no range.
 struct BoundedFloat {
     const char* name;
     float value;
@@ -134,7 +135,7 @@ void to_proto(const RenderSettings& settings, v1::RenderSettings& message) {
 Decoded<RenderSettings> from_proto(const v1::RenderSettings& message) {
     const auto denoiser = known<Denoiser>(message.denoiser());
     const auto tone_map = tone_map_from_proto(message.tone_map());
-    const bool is_set = message.denoised_images() != v1::DENOISED_IMAGES_UNSPECIFIED; // old senders knew one value
+    const bool is_set = message.denoised_images() != v1::DENOISED_IMAGES_UNSPECIFIED; // old senders only had kSource
     const auto images = is_set ? known<DenoisedImages>(message.denoised_images()) : DenoisedImages::kSource;
     if (!denoiser || !tone_map || !images) {
         return decode_error("settings: unknown denoiser, tone map or denoised images");

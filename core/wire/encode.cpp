@@ -4,7 +4,6 @@
 #include "core/codec/crc32c.h"
 #include "core/lightfield/normal_precision.h"
 #include "core/wire/base_view.h"
-#include "core/wire/convert.h"
 
 #include <algorithm>
 #include <deque>
@@ -20,7 +19,7 @@ EncodedPlane without_strips(const Plane& plane, codec::Encoding encoding) {
     return {plane.semantic, plane.format, encoding, plane.width_px, plane.height_px, {}};
 }
 
-/// A plane to encode, what it may refer to, and where to put its strips.
+/// A plane to encode, the planes to which its strips may refer, and the destination of the strips.
 struct Job {
     const Plane* plane = nullptr;
     const Plane* reference = nullptr; ///< null: none
@@ -36,7 +35,8 @@ StripBytes share(std::vector<std::byte> bytes) {
     return {std::make_shared<const std::vector<std::byte>>(std::move(bytes)), crc32c};
 }
 
-/// What a strip may be predicted from: not from rows that some client gets in another form.
+/// The plane that the strip of `band` may be predicted from; null: none. Rows of the base view that some clients get in
+/// another form cannot serve.
 const Plane* base_of(const Job& job, codec::RowBand band) {
     if (job.base == nullptr) {
         return nullptr;
@@ -59,7 +59,7 @@ void encode_strip(const Job& job, EncodedStrip& strip) {
     }
 }
 
-/// Encodes all strips of all planes as one loop, so that threads stay busy to the end.
+/// Encodes all strips of all planes in one parallel loop, which keeps all threads busy until the end.
 void encode_all(std::span<const Job> jobs, WorkerPool& pool) {
     struct Item {
         Job job;
@@ -78,7 +78,7 @@ void encode_all(std::span<const Job> jobs, WorkerPool& pool) {
     });
 }
 
-/// The plane that `plane` may refer to; null if the key frame has none of its kind.
+/// `reference` if `plane` may refer to it, that is, if both have one format and size; else null.
 const Plane* fitting(const Plane* reference, const Plane& plane) {
     const bool fits = reference != nullptr && reference->format == plane.format &&
                       reference->width_px == plane.width_px && reference->height_px == plane.height_px;
@@ -93,7 +93,7 @@ const Plane* find_view(const Views* views, LatticePosition position) {
     return found == views->views.end() ? nullptr : &found->image;
 }
 
-/// Planes that were converted to another format, where they stay while they are encoded.
+/// Keeps planes that were converted to another format while they are encoded.
 class ConvertedPlanes {
 public:
     /// `plane` in `format`; null if it is null.
@@ -106,10 +106,10 @@ public:
     }
 
 private:
-    std::deque<Plane> planes_; // addresses stay
+    std::deque<Plane> planes_; // a deque keeps the addresses of its elements
 };
 
-/// Encodes views that others are predicted from, then the others. `jobs` are in the order of `views`.
+/// Encodes the base views, then the views that are predicted from them. `jobs` are in the order of `views`.
 void encode_predicted(const Views& views, EncodedViews& encoded, std::vector<Job> jobs, WorkerPool& pool) {
     std::vector<Job> bases;
     std::vector<Job> others;
@@ -167,8 +167,9 @@ EncodedSource encode_source(const SourceFrame& frame, std::span<const PlaneChoic
     for (const PlaneChoice& choice : distinct) {
         const PlaneFormat format = format_of(choice);
         const Plane* plane = converted.in_format(frame.find(choice.semantic), format);
-        FC_ASSERT(plane != nullptr, "a plane was chosen that the frame does not have");
-        const bool may_refer = key.source != nullptr && !is_residual(choice.semantic); // other tiles in every frame
+        FC_ASSERT(plane != nullptr, "the frame has every chosen plane");
+        // The tiles of residual planes differ in every frame.
+        const bool may_refer = key.source != nullptr && !is_residual(choice.semantic);
         const Plane* reference = may_refer ? key.source->find(choice.semantic) : nullptr;
         jobs.push_back({plane, fitting(converted.in_format(reference, format), *plane), key.is_optional,
                         frame.header.settings.exposure,
@@ -189,9 +190,9 @@ EncodedViews encode_views(const Views& views, const ViewFormat& format, const Ke
     for (const View& view : views.views) {
         FC_ASSERT(view.image.semantic == PlaneSemantic::kColour && view.image.format == PlaneFormat::kRgb8 &&
                       view.image.width_px == format.width_px && view.image.height_px == format.height_px,
-                  "view differs from its format");
+                  "every view has the size of the ViewFormat");
         const auto [entry, is_new] = encoded.views.try_emplace(view.position);
-        FC_ASSERT(is_new, "two views at one lattice position");
+        FC_ASSERT(is_new, "each lattice position has one view");
         entry->second = {without_strips(view.image, format.encoding), view.discards};
         jobs.push_back({&view.image, fitting(find_view(key.views, view.position), view.image), key.is_optional,
                         views.header.settings.exposure, &entry->second.image});

@@ -2,6 +2,7 @@
 #include "core/wire/frame_assembler.h"
 
 #include "core/codec/crc32c.h"
+#include "core/codec/plane_codec.h"
 #include "core/wire/base_view.h"
 #include "core/wire/convert.h"
 #include "core/wire/frame_parts.h"
@@ -19,9 +20,9 @@ using Clock = std::chrono::steady_clock;
 struct Strip {
     std::uint32_t part = 0;
     codec::RowBand band;
-    std::uint32_t size = 0;     ///< announced
+    std::uint32_t size = 0;     ///< announced bytes
     std::uint32_t received = 0; ///< bytes so far
-    std::string bytes;          ///< what was received, if it is to be decoded
+    std::string bytes;          ///< received bytes; stays empty without Decoding::kFull
 };
 
 std::span<const std::byte> as_bytes(const std::string& text) {
@@ -40,12 +41,12 @@ struct FrameAssembler::Frame {
     std::optional<ViewSet> set; ///< of a frame of views
     std::vector<Part> parts;
     std::uint64_t key_frame_id = 0;                 ///< as in the header
-    const std::vector<Plane>* key_planes = nullptr; ///< what strips may refer to; null: nothing
+    const std::vector<Plane>* key_planes = nullptr; ///< to which strips may refer; null: none
     Decoding decoding = Decoding::kFull;
     std::uint32_t next_index = 1;
-    std::optional<Strip> open;    ///< strip of which slices are missing
+    std::optional<Strip> open;    ///< strip with missing slices
     std::vector<Strip> undecoded; ///< complete strips
-    std::optional<std::uint32_t> base_part; ///< that others may be predicted from
+    std::optional<std::uint32_t> base_part; ///< index of the base view; empty: views are not predicted from each other
     BaseStrips base_strips;
     std::uint32_t crc32c = 0;
     std::uint64_t payload_bytes = 0;
@@ -93,13 +94,13 @@ Decoded<std::unique_ptr<FrameAssembler::Frame>> FrameAssembler::Frame::begin(con
 }
 
 Decoded<void> FrameAssembler::Frame::refer_to(const std::vector<Plane>& planes) {
-    const auto is_alike = [](const Part& part, const Plane& plane) { // tiles differ from frame to frame
+    const auto is_alike = [](const Part& part, const Plane& plane) { // sizes of residual planes may differ
         return part.semantic == plane.semantic && part.format == plane.format &&
                (is_residual(part.semantic) ||
                 (part.width_px == plane.width_px && part.height_px == plane.height_px));
     };
     if (!std::ranges::equal(parts, planes, is_alike)) {
-        return decode_error("header.key_frame_id: that frame had other planes");
+        return decode_error("header.key_frame_id: the key frame has other planes");
     }
     key_planes = &planes;
     return {};
@@ -136,7 +137,7 @@ Decoded<void> FrameAssembler::Frame::add_slice(v1::FrameChunk& chunk) {
     const codec::RowBand band{slice.first_row(), slice.row_count()};
     if (slice.part() != open->part || band != open->band || slice.strip_bytes() != open->size ||
         slice.slice_offset() != open->received) {
-        return decode_error("strip: slice does not continue the one before");
+        return decode_error("strip: slice does not continue the previous slice");
     }
     const std::string& payload = chunk.payload();
     if (payload.empty() || payload.size() > open->size - open->received) {
@@ -157,7 +158,7 @@ Decoded<void> FrameAssembler::Frame::add_slice(v1::FrameChunk& chunk) {
     return {};
 }
 
-/// Counts and checks the payload; keeps it if it is to be decoded.
+/// Counts the payload and adds it to the CRC; keeps it for decoding with Decoding::kFull.
 void FrameAssembler::Frame::keep_payload(v1::FrameChunk& chunk) {
     const std::string& payload = chunk.payload();
     open->received += static_cast<std::uint32_t>(payload.size());
@@ -169,14 +170,14 @@ void FrameAssembler::Frame::keep_payload(v1::FrameChunk& chunk) {
         return;
     }
     if (open->bytes.empty()) {
-        open->bytes = std::move(*chunk.mutable_payload()); // usual case: the whole strip, not copied
+        open->bytes = std::move(*chunk.mutable_payload()); // usually the whole strip, so nothing is copied
     } else {
         open->bytes += payload;
     }
 }
 
 Decoded<void> FrameAssembler::Frame::decode_strips(WorkerPool* pool) {
-    for (const Strip& strip : undecoded) { // before the loop below: memory of a part is shared by its strips
+    for (const Strip& strip : undecoded) { // before strips are decoded in parallel: they share the memory of their part
         Part& part = parts[strip.part];
         if (part.plane.bytes.empty()) {
             auto plane = codec::allocate_plane(part.semantic, part.format, part.width_px, part.height_px);
@@ -334,7 +335,7 @@ Decoded<void> FrameAssembler::begin_frame(const v1::FrameChunk& chunk) {
     }
     (*frame)->decoding = decoding_;
     if (decoding_ != Decoding::kFull) {
-        for (Part& part : (*frame)->parts) { // named, without pixels
+        for (Part& part : (*frame)->parts) { // planes with semantic, format and size, but without pixels
             part.plane = {part.semantic, part.format, part.width_px, part.height_px, {}};
         }
     }
@@ -364,7 +365,7 @@ void FrameAssembler::keep_key_frame() {
 
 Decoded<void> FrameAssembler::check_order(const v1::FrameChunk& chunk) const {
     if (epoch_ == 0 || chunk.epoch() != epoch_) {
-        return decode_error("epoch " + std::to_string(chunk.epoch()) + ", now is " + std::to_string(epoch_));
+        return decode_error("epoch " + std::to_string(chunk.epoch()) + " instead of " + std::to_string(epoch_));
     }
     if (chunk.payload().size() > limits_.max_chunk_bytes) {
         return decode_error("payload of " + std::to_string(chunk.payload().size()) + " bytes, at most " +
@@ -375,7 +376,7 @@ Decoded<void> FrameAssembler::check_order(const v1::FrameChunk& chunk) const {
             return decode_error("begins before " + frame_name(frame_->header.frame_id) + " was completed");
         }
         if (last_frame_id_ && chunk.frame_id() <= *last_frame_id_) {
-            return decode_error("frame ids must grow, " + std::to_string(*last_frame_id_) + " was before");
+            return decode_error("frame ids must grow, the previous one was " + std::to_string(*last_frame_id_));
         }
         return chunk.index() == 0 ? Decoded<void>{} : decode_error("header chunk with index above 0");
     }

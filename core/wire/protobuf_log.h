@@ -3,8 +3,8 @@
 
 namespace fieldcast::wire {
 
-/// Sends what the protobuf library says to our log, at level debug: peers make it speak as often as they like, and it
-/// would write straight to standard error. For the whole process; may be called again.
+/// Redirects the log of the protobuf library to ours, at level debug. Otherwise the library would write to standard
+/// error, and peers can cause any number of its messages. Applies to the whole process; may be called again.
 void take_protobuf_log();
 
 } // namespace fieldcast::wire

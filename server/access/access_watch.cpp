@@ -18,10 +18,10 @@ constexpr std::size_t kMaxLoggedLines = 5;
 
 void log_broken_lines(const std::vector<std::string>& problems) {
     for (std::size_t i = 0; i < std::min(problems.size(), kMaxLoggedLines); ++i) {
-        log::error("a line of the token file counts for nobody", {{"problem", problems[i]}});
+        log::error("line of the token file ignored", {{"problem", problems[i]}});
     }
     if (problems.size() > kMaxLoggedLines) {
-        log::error("further lines of the token file count for nobody", {{"count", problems.size() - kMaxLoggedLines}});
+        log::error("further lines of the token file ignored", {{"count", problems.size() - kMaxLoggedLines}});
     }
 }
 
@@ -30,7 +30,7 @@ void log_broken_lines(const std::vector<std::string>& problems) {
 AccessWatch::AccessWatch(const Security& security, Gate& gate, std::function<void()> on_new_tokens)
     : security_(security), gate_(gate), on_new_tokens_(std::move(on_new_tokens)) {
     if (security_.tokens) {
-        token_stamp_ = stamp_of(*security_.tokens); // before reading: a change in between is seen again
+        token_stamp_ = stamp_of(*security_.tokens); // before reading, so that a change in between is noticed later
         TokenList tokens = TokenList::read(*security_.tokens);
         log::info("tokens in use", {{"file", security_.tokens->string()}, {"count", tokens.size()}});
         warn_if_empty(tokens);
@@ -81,10 +81,10 @@ void AccessWatch::look_at_tokens() {
         token_problem_.clear();
         log_broken_lines(problems);
         take_up(std::move(tokens));
-    } catch (const std::exception& problem) { // and tried again until it can be read
+    } catch (const std::exception& problem) { // the next check tries again
         if (is_changed || token_problem_ != problem.what()) {
             token_problem_ = problem.what();
-            log::error("the token file cannot be used: nobody may call", {{"problem", token_problem_}});
+            log::error("token file not usable, all calls are denied", {{"problem", token_problem_}});
             take_up({});
         }
     }
@@ -99,7 +99,7 @@ void AccessWatch::take_up(TokenList tokens) {
 
 void AccessWatch::warn_if_empty(const TokenList& tokens) const {
     if (tokens.size() == 0) {
-        log::warn("there is no token in force: nobody may call", {{"file", security_.tokens->string()}});
+        log::warn("token file without tokens, all calls are denied", {{"file", security_.tokens->string()}});
     }
 }
 

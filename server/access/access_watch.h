@@ -13,23 +13,23 @@
 
 namespace fieldcast::access {
 
-/// What a server is protected by.
+/// Protection of a server: files of certificates and tokens.
 struct Security {
-    std::optional<CertificateFiles> certificates; ///< unset: plain text
-    std::optional<std::filesystem::path> tokens;  ///< unset: everybody may do everything
-    bool accepts_known_attacks = false;           ///< on gRPC itself, see exposure_problem()
+    std::optional<CertificateFiles> certificates; ///< unset: no TLS
+    std::optional<std::filesystem::path> tokens;  ///< unset: every caller has the role admin
+    bool accepts_known_attacks = false;           ///< allows a gRPC with known attacks, see exposure_problem()
 };
 
-/// Follows changes of the token file and the certificates once a second, in a thread of its own. Tokens fail closed: a
-/// token file that is missing, unreadable or empty means that nobody may call, and a line with a mistake counts for
-/// nobody. Certificates that have become unusable are reported, and what was read before stays in force.
+/// Checks the token file and the certificates for changes once a second, in a thread of its own. Tokens fail closed:
+/// all calls are denied while the token file is missing, unreadable or empty, and a line with a mistake is ignored. If
+/// certificates become unusable, that is logged and the previous ones stay in use.
 class AccessWatch {
 public:
-    /// Reads the tokens into `gate`, which must outlive this. `on_new_tokens` is called after each later change. Throws
-    /// UserError if a file is not usable now; here, a broken line is enough.
+    /// Reads the tokens into `gate`, which must outlive this. Calls `on_new_tokens` after each later change. Throws
+    /// UserError if a file is not usable or one line of the token file has a mistake.
     AccessWatch(const Security& security, Gate& gate, std::function<void()> on_new_tokens);
 
-    /// When the certificate in use expires, if there is one.
+    /// Expiry of the certificate in use, if there is one.
     std::optional<std::chrono::system_clock::time_point> certificate_expiry() const { return *expiry_.lock(); }
 
 private:
@@ -45,7 +45,7 @@ private:
     Gate& gate_;
     std::function<void()> on_new_tokens_;
     FileStamp token_stamp_;
-    std::string token_problem_; ///< why the file cannot be used; empty: it can
+    std::string token_problem_; ///< why the token file is not usable; empty: it is
     std::vector<FileStamp> certificate_stamps_;
     mutable Guarded<std::optional<std::chrono::system_clock::time_point>> expiry_;
     std::jthread thread_;

@@ -18,7 +18,7 @@ namespace {
 
 using SystemTime = std::chrono::system_clock::time_point;
 
-constexpr std::size_t kMaxPemBytes = 4U << 20; // a bundle of all public roots has a quarter of this
+constexpr std::size_t kMaxPemBytes = 4U << 20; // four times a bundle of all public roots
 
 template <class T> using Owned = std::unique_ptr<T, void (*)(T*)>;
 
@@ -28,7 +28,7 @@ Owned<BIO> reader_of(const std::string& pem) {
     return {BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), BIO_free_all};
 }
 
-/// Encrypted keys fail instead of asking the terminal for a passphrase.
+/// Returns no passphrase, so that encrypted keys fail instead of prompting on the terminal.
 int no_passphrase(char*, int, int, void*) {
     return 0;
 }
@@ -38,7 +38,7 @@ Owned<X509> read_certificate(const std::filesystem::path& file) {
     const auto reader = reader_of(pem);
     Owned<X509> certificate(PEM_read_bio_X509(reader.get(), nullptr, no_passphrase, nullptr), X509_free);
     if (certificate == nullptr) {
-        throw UserError(file.string() + ": holds no certificate in PEM form (-----BEGIN CERTIFICATE-----)");
+        throw UserError(file.string() + ": contains no certificate in PEM format (-----BEGIN CERTIFICATE-----)");
     }
     return certificate;
 }
@@ -49,7 +49,7 @@ Owned<EVP_PKEY> read_key(const std::filesystem::path& file) {
     Owned<EVP_PKEY> key(PEM_read_bio_PrivateKey(reader.get(), nullptr, no_passphrase, nullptr), EVP_PKEY_free);
     OPENSSL_cleanse(pem.data(), pem.size());
     if (key == nullptr) {
-        throw UserError(file.string() + ": holds no private key in PEM form, or one with a passphrase");
+        throw UserError(file.string() + ": contains no private key in PEM format, or the key has a passphrase");
     }
     return key;
 }

@@ -7,9 +7,9 @@ namespace fieldcast::access {
 
 namespace {
 
-constexpr std::size_t kMaxTokenBytes = 512; // ours have 46; what is longer is not worth hashing
+constexpr std::size_t kMaxTokenBytes = 512; // our tokens have 46; longer ones are not hashed
 
-/// The token in "Bearer TOKEN" (RFC 6750, section 2.1; the scheme in any case, as RFC 9110 wants it).
+/// The token in "Bearer TOKEN" (RFC 6750, section 2.1). The case of the scheme is ignored (RFC 9110, section 11.1).
 std::optional<std::string_view> token_in(std::optional<std::string_view> authorization) {
     constexpr std::string_view kScheme = "bearer ";
     if (!authorization || authorization->size() <= kScheme.size() || authorization->size() > kMaxTokenBytes) {
@@ -46,13 +46,13 @@ tl::expected<Identity, Denial> Gate::admit(std::optional<std::string_view> autho
     }
     const auto token = token_in(authorization);
     if (!token) {
-        return deny(Denial::Kind::kNoToken, "this server asks for a token: send the header 'authorization: Bearer "
+        return deny(Denial::Kind::kNoToken, "this server requires a token: send the header 'authorization: Bearer "
                                             "TOKEN' (fieldcast-client: --token-file FILE or FIELDCAST_TOKEN)");
     }
     auto identity = tokens->find(*token);
     if (!identity) {
         return deny(Denial::Kind::kUnknownToken,
-                    "this server does not know the token; it is mistyped, meant for another server or was revoked");
+                    "unknown token: it is mistyped, for another server, or revoked");
     }
     if (identity->role < needed) {
         return deny(Denial::Kind::kRoleTooLow, "the token of '" + identity->name + "' has the role " +

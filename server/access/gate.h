@@ -12,43 +12,44 @@
 
 namespace fieldcast::access {
 
-/// Why a caller may not do what it asked for.
+/// Reason for denying a call.
 struct Denial {
     enum class Kind : std::uint8_t {
-        kNoToken,      ///< none, or not as "Bearer TOKEN"
+        kNoToken,      ///< no token, or not sent as "Bearer TOKEN"
         kUnknownToken, ///< not in the list
         kRoleTooLow,
     };
     Kind kind = Kind::kNoToken;
-    std::string message; ///< for the caller; holds nothing of what it sent
+    std::string message; ///< for the caller; contains nothing that it sent
 };
 
-/// Decides who may call what. Thread-safe.
+/// Decides which callers may call which methods. Thread-safe.
 class Gate {
 public:
-    /// Everybody may do everything: without tokens a server listens on loopback only.
+    /// Without tokens every caller has the role admin; such a server listens on loopback only.
     Gate() = default;
     explicit Gate(TokenList tokens) { replace(std::move(tokens)); }
 
     bool asks_for_tokens() const;
 
-    /// `authorization` is the header's value, "Bearer TOKEN"; `method` the full name of a gRPC method.
+    /// The caller's identity, or why the call is denied. `authorization` is the value of the header, "Bearer TOKEN";
+    /// `method` is the full name of a gRPC method.
     tl::expected<Identity, Denial> admit(std::optional<std::string_view> authorization, std::string_view method) const;
 
-    /// As `admit`, for anything that is no gRPC method.
+    /// The same for anything else than a gRPC method.
     tl::expected<Identity, Denial> admit(std::optional<std::string_view> authorization, std::string_view what,
                                          Role needed) const;
 
-    /// Whether an identity that was once admitted still stands in the list.
+    /// Whether the token of an admitted identity is still in the list.
     bool is_valid(const Identity& identity) const;
 
-    /// From now on these tokens count.
+    /// Replaces the list of tokens.
     void replace(TokenList tokens);
 
 private:
     std::shared_ptr<const TokenList> tokens() const { return *tokens_.lock(); }
 
-    mutable Guarded<std::shared_ptr<const TokenList>> tokens_; ///< null: nobody is asked
+    mutable Guarded<std::shared_ptr<const TokenList>> tokens_; ///< null: no token is required
 };
 
 } // namespace fieldcast::access

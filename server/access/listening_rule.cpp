@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::pair kFirstThatWithstands{1, 57}; // major and minor
 
-/// The first two numbers of "1.51.1"; nothing if it does not begin with two.
+/// Major and minor number of "1.51.1"; nothing if the text does not begin with two numbers.
 std::optional<std::pair<int, int>> major_and_minor(std::string_view version) {
     std::pair<int, int> numbers{};
     const char* const end = version.data() + version.size();
@@ -29,7 +29,7 @@ std::optional<std::pair<int, int>> major_and_minor(std::string_view version) {
 std::optional<std::string> listening_problem(const std::string& host, const Protection& protection) {
     const bool is_checked_loopback = host == "127.0.0.1" || host == "[::1]" || host == "localhost";
     if (is_loopback(host) && protection.has_tokens && !protection.has_tls && !is_checked_loopback) {
-        return "with tokens and without TLS has to be 127.0.0.1, [::1] or localhost";
+        return "must be 127.0.0.1, [::1] or localhost if there are tokens and no TLS";
     }
     if (is_loopback(host) || (protection.has_tls && protection.has_tokens)) {
         return std::nullopt;
@@ -51,8 +51,8 @@ std::optional<std::string> exposure_problem(const std::string& host, const std::
         return std::nullopt;
     }
     return "is not a loopback address, and this server is linked to gRPC " + grpc_version +
-           ", which is older than 1.57: whoever reaches the port can take its memory and its descriptors without a "
-           "token. Listen on 127.0.0.1 with Envoy in front (deploy/envoy.yaml), or say --accept-known-grpc-attacks";
+           ", which is older than 1.57: anyone who reaches the port can exhaust its memory and descriptors without a "
+           "token. Listen on 127.0.0.1 with Envoy in front (deploy/envoy.yaml), or use --accept-known-grpc-attacks";
 }
 
 } // namespace fieldcast::access

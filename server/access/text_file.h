@@ -8,14 +8,15 @@
 
 namespace fieldcast::access {
 
-/// All of a file of at most `max_bytes`. Throws UserError naming it.
+/// Content of a file. Throws UserError that names the file if it is unreadable or larger than `max_bytes`.
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 
-/// Tells whether a file was replaced or rewritten. Follows links, so that a swapped folder counts.
+/// Identifies a version of a file: it differs after the file was replaced or rewritten. Links are followed, so a
+/// changed link to a folder is noticed, too.
 struct FileStamp {
     std::int64_t modified_ns = 0;
-    std::int64_t changed_ns = 0; ///< also by chmod, and by writers that set the time of modification back
-    std::int64_t bytes = -1; ///< -1: it could not be looked at
+    std::int64_t changed_ns = 0; ///< ctime: covers chmod and writers that reset the time of modification
+    std::int64_t bytes = -1; ///< size; -1: the file cannot be examined
     ino_t inode = 0;
     dev_t device = 0;
 
@@ -23,7 +24,7 @@ struct FileStamp {
 };
 FileStamp stamp_of(const std::filesystem::path& file);
 
-/// Anybody on this machine may write to it.
+/// Whether all users of this machine may write to the file.
 bool is_writable_by_all(const std::filesystem::path& file);
 
 } // namespace fieldcast::access

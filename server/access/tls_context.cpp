@@ -33,7 +33,7 @@ std::vector<FileStamp> stamps_of(const CertificateFiles& files) {
 }
 
 TlsContext::TlsContext(const CertificateFiles& files)
-    : files_(files), stamps_(stamps_of(files)), // before reading: a change in between is seen again
+    : files_(files), stamps_(stamps_of(files)), // before reading, so that a change in between is noticed later
       context_(read(files)) {}
 
 TlsContext::Context TlsContext::read(const CertificateFiles& files) {
@@ -43,7 +43,7 @@ TlsContext::Context TlsContext::read(const CertificateFiles& files) {
     expect(context != nullptr && SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION) == 1,
            "TLS 1.2 is not available");
     SSL_CTX_set_default_passwd_cb(context, no_passphrase);
-    SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF); // nothing is kept of callers that have gone
+    SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF); // keeps no memory of closed connections
     SSL_CTX_set_options(context, SSL_OP_NO_TICKET | SSL_OP_NO_RENEGOTIATION);
     SSL_CTX_set_num_tickets(context, 0);
     expect(SSL_CTX_use_certificate_chain_file(context, files.certificate.c_str()) == 1,
@@ -52,7 +52,7 @@ TlsContext::Context TlsContext::read(const CertificateFiles& files) {
            files.key.string() + ": cannot be used as a key for TLS");
     if (files.client_ca) {
         expect(SSL_CTX_load_verify_locations(context, files.client_ca->c_str(), nullptr) == 1,
-               files.client_ca->string() + ": cannot be used as certificates of clients' authorities");
+               files.client_ca->string() + ": cannot be used as certificates of the authorities for clients");
         SSL_CTX_set_verify(context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, nullptr);
     }
     return owner;
@@ -65,7 +65,7 @@ ssl_ctx_st* TlsContext::share() {
         try {
             context_ = read(files_);
         } catch (const std::exception& problem) {
-            log::error("certificate not replaced, the earlier one stays in force", {{"problem", problem.what()}});
+            log::error("certificate not replaced, the previous one stays in use", {{"problem", problem.what()}});
         }
     }
     SSL_CTX_up_ref(context_.get());

@@ -11,17 +11,18 @@ struct ssl_ctx_st; // OpenSSL's SSL_CTX
 
 namespace fieldcast::access {
 
-/// Tells whether certificate, key or authorities were changed.
+/// Versions of certificate, key and authorities; they differ after a change.
 std::vector<FileStamp> stamps_of(const CertificateFiles& files);
 
-/// The server's side of TLS 1.2 or newer, for what does not speak gRPC. Follows its files. Not thread-safe.
+/// Server side of TLS 1.2 or newer, for endpoints other than gRPC. Reads its files again when they change. Not
+/// thread-safe.
 class TlsContext {
 public:
-    /// Throws UserError naming the file that is not usable.
+    /// Throws UserError that names the unusable file.
     explicit TlsContext(const CertificateFiles& files);
 
-    /// What the next connection begins with, read anew if the files have changed. If they are not usable, that is
-    /// logged and what was read before stays in force. The caller owns a reference and ends it with SSL_CTX_free.
+    /// The context for the next connection, made again if the files have changed. If they are not usable, that is
+    /// logged and the previous context stays in use. The caller owns a reference and releases it with SSL_CTX_free.
     ssl_ctx_st* share();
 
 private:

@@ -9,7 +9,7 @@
 
 namespace fieldcast::access {
 
-/// SHA-256 of a token. Tokens have 256 random bits, so a plain hash cannot be searched backwards: no salt, no
+/// SHA-256 of a token. Tokens have 256 random bits, so the hash cannot be inverted by search and needs neither salt nor
 /// stretching.
 using TokenHash = std::array<std::uint8_t, 32>;
 
@@ -20,9 +20,9 @@ std::string make_token();
 TokenHash hash_token(std::string_view token);
 
 std::string to_hex(const TokenHash& hash);
-std::optional<TokenHash> parse_hash(std::string_view hex); ///< 64 hexadecimal digits
+std::optional<TokenHash> parse_hash(std::string_view hex); ///< `hex`: 64 hexadecimal digits
 
-/// In a time that does not depend on where they differ.
+/// Compares in a time that does not depend on the position of a difference.
 bool is_equal(const TokenHash& a, const TokenHash& b);
 
 } // namespace fieldcast::access

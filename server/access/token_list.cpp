@@ -26,27 +26,27 @@ Identity parse_line(const std::string& line) {
     std::string rest;
     words >> name >> role_word >> hash_word;
     if (hash_word.empty() || words >> rest) {
-        throw UserError("a line is NAME ROLE sha256:HEX, as --make-token prints it");
+        throw UserError("expected NAME ROLE sha256:HEX, as --make-token prints it");
     }
     if (!is_token_name(name)) {
-        throw UserError("a name has 1 to 64 letters, digits, '.', '_' or '-'");
+        throw UserError("the name must have 1 to 64 letters, digits, '.', '_' or '-'");
     }
     const auto role = parse_role(role_word);
     if (!role) {
-        throw UserError("a role is view, steer or admin");
+        throw UserError("the role must be view, steer or admin");
     }
     const bool has_prefix = hash_word.starts_with(kHashPrefix);
     const auto hash = has_prefix ? parse_hash(std::string_view(hash_word).substr(kHashPrefix.size())) : std::nullopt;
     if (!hash) {
-        throw UserError("the third word is sha256: and 64 hexadecimal digits, never the token itself");
+        throw UserError("the third word must be sha256: and 64 hexadecimal digits, never the token itself");
     }
     return {.name = name, .role = *role, .hash = *hash};
 }
 
-/// The lines of a file so far.
+/// The lines that were read so far.
 class Entries {
 public:
-    /// Throws UserError if the name or the hash stands in an earlier line; then that line does not count either.
+    /// Throws UserError if an earlier line has the same name or hash; that line is then ignored, too.
     void add(Identity entry, int line) {
         if (lines_.size() == kMaxEntries) {
             throw UserError("there are more than " + std::to_string(kMaxEntries) + " tokens");
@@ -55,9 +55,9 @@ public:
             const bool is_same_name = earlier.entry.name == entry.name;
             if (is_same_name || earlier.entry.hash == entry.hash) {
                 const std::string what = is_same_name ? "the name '" + entry.name + "'" : std::string("this hash");
-                const std::string problem = what + " stands in line " + std::to_string(earlier.number) + ", too";
+                const std::string problem = what + " is in line " + std::to_string(earlier.number) + ", too";
                 earlier.counts = false;
-                lines_.push_back({.entry = std::move(entry), .number = line, .counts = false}); // `earlier` is gone
+                lines_.push_back({.entry = std::move(entry), .number = line, .counts = false}); // invalidates `earlier`
                 throw UserError(problem);
             }
         }
@@ -85,7 +85,7 @@ private:
 
 std::string text_of(const std::filesystem::path& file) {
     if (is_writable_by_all(file)) {
-        throw UserError(file.string() + ": everybody on this machine may write to it; chmod o-w");
+        throw UserError(file.string() + ": all users of this machine may write to it; run chmod o-w");
     }
     return read_text_file(file, kMaxFileBytes);
 }

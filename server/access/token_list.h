@@ -12,7 +12,7 @@
 
 namespace fieldcast::access {
 
-/// Whom a token belongs to.
+/// Holder of a token: name and role.
 struct Identity {
     std::string name;
     Role role = Role::kView;
@@ -21,25 +21,25 @@ struct Identity {
     bool operator==(const Identity&) const = default;
 };
 
-/// The tokens that a server knows, by their hashes. Never changed.
+/// The valid tokens of a server, stored as hashes. Immutable. Its file has one line per token:
 ///
 ///     # comment
 ///     NAME ROLE sha256:HEX
 class TokenList {
 public:
-    /// A list in which nobody stands.
+    /// An empty list: no token is valid.
     TokenList() = default;
 
-    /// Throws UserError naming file and line, and nothing of what the line says: it may hold a token by mistake. A file
-    /// without tokens is fine.
+    /// Throws UserError that names file and line, but does not quote the line: it may contain a token by mistake. A
+    /// file without tokens is allowed.
     static TokenList read(const std::filesystem::path& file);
     static TokenList parse(std::string_view text, const std::string& place);
 
-    /// As `read`, except that lines with a mistake count for nobody and `problems` gets what they would have thrown. Of
-    /// lines with the same name or hash none counts. Still throws if the file as a whole cannot be used.
+    /// The same, except that lines with a mistake are ignored and their errors are appended to `problems`. All lines
+    /// with the same name or the same hash are ignored, too. Throws UserError if the file as a whole is not usable.
     static TokenList read_good_lines(const std::filesystem::path& file, std::vector<std::string>& problems);
 
-    /// Whose `token` is. Compares with every entry, in a time that does not depend on the token.
+    /// The holder of `token`, or nothing. Compares with every entry, so the time does not depend on the token.
     std::optional<Identity> find(std::string_view token) const;
 
     bool contains(const Identity& identity) const;
@@ -52,10 +52,10 @@ private:
     std::vector<Identity> entries_;
 };
 
-/// Names of tokens: 1 to 64 of letters, digits, '.', '_', '-'.
+/// Whether `name` is a valid name of a token: 1 to 64 letters, digits, '.', '_' or '-'.
 bool is_token_name(std::string_view name);
 
-/// A line for a token file.
+/// The line of a token file for this identity.
 std::string token_line(const Identity& identity);
 
 } // namespace fieldcast::access

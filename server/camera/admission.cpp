@@ -8,10 +8,10 @@ namespace fieldcast::camera {
 
 namespace {
 
-constexpr int kUncountedFrames = 2; // buffers for its views, kernels that were not used before
-constexpr double kNewest = 0.2;     // weight of a new frame: a second or so at usual rates
+constexpr int kUncountedFrames = 2; // these allocate buffers for views and run kernels for the first time
+constexpr double kNewest = 0.2;     // weight of a new frame: averages over about a second at usual rates
 constexpr double kLeastCorrection = 0.001;
-constexpr double kMostCorrection = 1000.0; // a frame that somebody else held up must not shut the door for ever
+constexpr double kMostCorrection = 1000.0; // one frame that others delayed must not block admission for long
 
 void follow(double& average, double value) {
     average = std::clamp(average + kNewest * (value - average), kLeastCorrection, kMostCorrection);
@@ -32,8 +32,8 @@ std::optional<Rejection> Admission::admit(Id id, const std::string& channel, con
     const std::size_t leaving = replaced && cameras_.contains(*replaced) ? 1 : 0;
     if (places() - leaving >= limits_.max_cameras) {
         return Rejection{.shortage = Shortage::kCameras,
-                         .message = "one more camera asked; all " + std::to_string(limits_.max_cameras) +
-                                    " that clients of this server may have are in use"};
+                         .message = "all " + std::to_string(limits_.max_cameras) +
+                                    " cameras that this server gives to single clients are in use"};
     }
     const Camera camera{.channel = channel,
                         .load = load,
@@ -55,7 +55,7 @@ std::optional<Rejection> Admission::change(Id id, const feed::CameraLoad& load) 
     const double before = promise(changed);
     changed.load = load;
     changed.uncounted = kUncountedFrames;
-    if (promise(changed) > before) { // less is always allowed
+    if (promise(changed) > before) { // a smaller load is always allowed
         if (auto problem = time_problem(id, std::nullopt, changed)) {
             return problem;
         }
@@ -78,7 +78,7 @@ void Admission::leave(Id id) {
 void Admission::observe(Id id, Seconds used) {
     const auto found = cameras_.find(id);
     if (found == cameras_.end()) {
-        return; // its last frame
+        return; // its last frame: it has left
     }
     Camera& camera = found->second;
     camera.last_frame = now_;

@@ -70,7 +70,7 @@ OwnCameras::OwnCameras(const Limits& limits, metrics::Registry& registry)
 OwnCameras::~OwnCameras() {
     collector_.end();
     thread_ = {}; // stops and joins
-    std::map<Id, Camera> left; // ends without the lock, which they take to tell what frames cost
+    std::map<Id, Camera> left; // destroyed without the lock, which cameras take to report device time
     std::swap(left, state_.lock()->cameras);
 }
 
@@ -134,12 +134,12 @@ void OwnCameras::close(Id id) {
         Camera& camera = state->cameras.at(id);
         camera.is_closed = true;
         state->admission.stop(id);
-        if (camera.stage == Stage::kWaiting) { // there is nothing to end
+        if (camera.stage == Stage::kWaiting) { // not made yet: nothing to end
             state->admission.leave(id);
             state->cameras.erase(id);
         }
     }
-    changed_.notify_all(); // also the one that replaces it
+    changed_.notify_all(); // the camera that replaces it may be made now
 }
 
 void OwnCameras::observe(Id id, std::chrono::duration<double> used) {
@@ -173,7 +173,7 @@ void OwnCameras::work(const std::stop_token& stop) {
 
 std::optional<OwnCameras::Id> OwnCameras::next_job(const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] {
-        { auto state = state_.lock(); } // not between a waiter's test and its sleep
+        { auto state = state_.lock(); } // else a waiter between its test and its sleep would miss the notification
         changed_.notify_all();
     });
     const auto is_ended = [](const auto& entry) { return entry.second.is_closed; };
@@ -182,7 +182,7 @@ std::optional<OwnCameras::Id> OwnCameras::next_job(const std::stop_token& stop) 
         const auto is_new = [&](const auto& entry) {
             return entry.second.stage == Stage::kWaiting && state.admission.has_place(entry.first);
         };
-        auto found = std::ranges::find_if(state.cameras, is_ended); // first: it makes room
+        auto found = std::ranges::find_if(state.cameras, is_ended); // first: ending a camera makes room
         found = found == state.cameras.end() ? std::ranges::find_if(state.cameras, is_new) : found;
         job = found == state.cameras.end() ? std::nullopt : std::optional(found->first);
         return stop.stop_requested() || job;
@@ -191,7 +191,7 @@ std::optional<OwnCameras::Id> OwnCameras::next_job(const std::stop_token& stop) 
 }
 
 void OwnCameras::do_job(Id id) {
-    Camera job; // no lock while it is made or ends
+    Camera job; // made or ended without the lock
     {
         auto state = state_.lock();
         const auto found = state->cameras.find(id);
@@ -240,18 +240,18 @@ void OwnCameras::collect(metrics::Page& page) {
     state->admission.look_at_clock(Clock::now());
     for (const std::string& channel : state->channels) {
         const metrics::Labels labels{{"channel", channel}};
-        page.add_gauge({"fieldcast_own_cameras", "Cameras that belong to one client each, also those that are just "
+        page.add_gauge({"fieldcast_own_cameras", "Cameras that belong to one client each, including those that are "
                                                  "being made or ended."},
                        labels, static_cast<double>(state->admission.cameras_of(channel)));
-        page.add_gauge({"fieldcast_own_camera_promised_ratio", "Seconds of the device per second that own cameras which "
-                                                               "render were promised."},
+        page.add_gauge({"fieldcast_own_camera_promised_ratio", "Device seconds per second that are promised to own "
+                                                               "cameras that render."},
                        labels, state->admission.promised_ms_per_second(channel) * 1e-3);
     }
 }
 
 metrics::Counter& OwnCameras::refused(const std::string& channel, Shortage shortage) {
     return registry_.counter({"fieldcast_own_cameras_refused_total",
-                              "Cameras that a client asked for and did not get, by what was short."},
+                              "Own cameras that clients were refused, by exhausted resource."},
                              {{"channel", channel}, {"reason", label_of(shortage)}});
 }
 

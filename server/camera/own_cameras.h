@@ -18,34 +18,35 @@
 
 namespace fieldcast::camera {
 
-/// Where the frames of one camera go, and to whom it tells what they cost.
+/// Outputs of one camera: its frames, and the device time that each one used.
 struct CameraPlace {
     std::shared_ptr<feed::Feed> feed;
-    std::function<void(std::chrono::duration<double>)> used; ///< device time of a frame; from any thread
+    std::function<void(std::chrono::duration<double>)> used; ///< gets the device time of each frame; from any thread
 };
 
-/// Makes frames for `place.feed` until what it returns is destroyed. Both may take seconds; throws if it cannot.
+/// Starts a camera that publishes frames to `place.feed` until the returned object is destroyed. Both may take seconds;
+/// throws if the camera cannot be made.
 using MakeCamera = std::function<std::shared_ptr<void>(CameraPlace place)>;
 
-/// The cameras of all clients that have one of their own. One thread makes and ends them, one after the other, so that
-/// clients that come and go cost no more threads or memory than the limits allow: a camera counts until it is gone.
+/// All cameras that belong to one client each. One thread makes and ends them, one after the other, and a camera counts
+/// until it is destroyed: clients that reconnect often cannot exceed the limits on threads and memory. Thread-safe.
 class OwnCameras {
 public:
     /// `registry` must outlive it.
     OwnCameras(const Limits& limits, metrics::Registry& registry);
 
-    /// No feed may be open any more.
+    /// All feeds must be closed before.
     ~OwnCameras();
     OwnCameras(const OwnCameras&) = delete;
     OwnCameras& operator=(const OwnCameras&) = delete;
 
-    /// What a channel needs to let clients have cameras of their own.
+    /// A channel that gives every client a camera.
     struct ChannelSetup {
-        feed::ChannelInfo info; ///< also of the feeds that are opened
-        FrameCost cost;         ///< of its frames
+        feed::ChannelInfo info; ///< also the info of the feeds that are opened
+        FrameCost cost;         ///< estimate for one of its frames
         MakeCamera make;
     };
-    /// Must not be used after this has gone.
+    /// Opens feeds of that channel; must not be used after the OwnCameras is destroyed.
     std::shared_ptr<feed::FeedOpener> opener(ChannelSetup setup);
 
 private:
@@ -76,11 +77,11 @@ private:
     std::chrono::nanoseconds waiting_time(const ChannelSetup* channel, std::chrono::steady_clock::time_point now);
 
     void work(const std::stop_token& stop);
-    std::optional<Id> next_job(const std::stop_token& stop); ///< waits; empty: stopped
+    std::optional<Id> next_job(const std::stop_token& stop); ///< waits for a camera to make or end; empty: stopped
     void do_job(Id id);
     std::shared_ptr<void> make(Id id, const ChannelSetup& channel, const std::shared_ptr<feed::Feed>& feed);
     void collect(metrics::Page& page);
-    metrics::Counter& refused(const std::string& channel, Shortage shortage); ///< counts them
+    metrics::Counter& refused(const std::string& channel, Shortage shortage); ///< counter of refusals
 
     metrics::Registry& registry_;
     log::Quota lines_{"everybody", log::Quota::kOfEverybody};

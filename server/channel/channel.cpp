@@ -2,7 +2,7 @@
 #include "server/channel/channel.h"
 
 #include "core/base/log.h"
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "server/channel/frame_encoder.h"
 #include "server/feed/frame_interval.h"
 
@@ -45,7 +45,7 @@ feed::ChannelInfo with_memory(feed::ChannelInfo info, std::shared_ptr<feed::View
 /// Whether nothing works on it any more.
 bool is_lost(const gpu::Device& device) {
     try {
-        gpu::Recorder recorder(device);
+        gpu::CommandRecorder recorder(device);
         recorder.submit();
         return false;
     } catch (const std::exception&) {
@@ -55,15 +55,17 @@ bool is_lost(const gpu::Device& device) {
 
 } // namespace
 
-Channel::Channel(const Shared& shared, const ops::ChannelChoice& choice)
-    : device_(shared.device), renderer_(shared.device, shared.config, choice), clock_(shared.config, renderer_.scene()),
-      feed_(std::make_shared<feed::Feed>(with_memory(renderer_.info(), shared.view_memory))), metrics_(shared.registry, feed_->info().name),
-      place_(shared.turns), encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
+Channel::Channel(const Shared& shared, const ChannelChoice& choice)
+    : device_(shared.device), renderer_(shared.device, shared.settings, choice),
+      clock_(shared.settings, renderer_.scene()),
+      feed_(std::make_shared<feed::Feed>(with_memory(renderer_.info(), shared.view_memory))),
+      metrics_(shared.registry, feed_->info().name), place_(shared.turns),
+      encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
       render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}
 
 Channel::Channel(const Shared& shared, const SettledChannel& settled, Client client)
-    : device_(shared.device), renderer_(shared.device, shared.config, settled),
-      clock_(shared.config, renderer_.scene(), client.begin), client_(std::move(client)), feed_(client_.feed),
+    : device_(shared.device), renderer_(shared.device, shared.settings, settled),
+      clock_(shared.settings, renderer_.scene(), client.begin), client_(std::move(client)), feed_(client_.feed),
       metrics_(shared.registry, feed_->info().name), place_(shared.turns),
       encode_thread_([this](const std::stop_token& stop) { run([&] { encode_loop(stop); }); }),
       render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}

@@ -23,7 +23,7 @@ public:
     /// What all channels of a server share.
     struct Shared {
         const gpu::Device& device;
-        const ops::Config& config;
+        const Settings& settings;
         DeviceTurns& turns; ///< at `device`
         metrics::Registry& registry;
         std::shared_ptr<feed::ViewMemory> view_memory; ///< that clients may make all channels take
@@ -31,7 +31,7 @@ public:
 
     /// Ready to serve when constructed; rendering starts with the first subscriber. What `shared` refers to must
     /// outlive it. Throws UserError if the scene is not usable.
-    Channel(const Shared& shared, const ops::ChannelChoice& choice);
+    Channel(const Shared& shared, const ChannelChoice& choice);
 
     /// Whose frames and what they cost are for somebody.
     struct Client {

@@ -13,9 +13,9 @@ std::int64_t nanoseconds_of(double seconds) {
 
 } // namespace
 
-ChannelClock::ChannelClock(const ops::Config& config, const scene::Scene& scene, std::optional<TimePoint> begin)
-    : scene_(scene), mode_(config.clock), fps_(static_cast<double>(config.frames_per_second)),
-      loop_frames_(config.loop_frames), fixed_time_s_(config.fixed_time_s), begin_(begin) {}
+ChannelClock::ChannelClock(const Settings& settings, const scene::Scene& scene, std::optional<TimePoint> begin)
+    : scene_(scene), mode_(settings.clock), fps_(static_cast<double>(settings.frames_per_second)),
+      loop_frames_(settings.loop_frames), fixed_time_s_(settings.fixed_time_s), begin_(begin) {}
 
 FrameMoment ChannelClock::next(TimePoint now) {
     begin_ = begin_.value_or(now);
@@ -33,14 +33,14 @@ FrameMoment ChannelClock::next(TimePoint now) {
 }
 
 void ChannelClock::resume() {
-    has_jumped_ = mode_ == ops::ClockMode::kReal && !fixed_time_s_ && scene_.duration_s > 0.0;
+    has_jumped_ = mode_ == ClockMode::kReal && !fixed_time_s_ && scene_.duration_s > 0.0;
 }
 
 std::int64_t ChannelClock::scene_time_ns(TimePoint now) {
     if (fixed_time_s_) {
         return nanoseconds_of(*fixed_time_s_);
     }
-    if (mode_ == ops::ClockMode::kReal) {
+    if (mode_ == ClockMode::kReal) {
         return std::chrono::duration_cast<std::chrono::nanoseconds>(now - *begin_).count();
     }
     return nanoseconds_of(frame_ / fps_);

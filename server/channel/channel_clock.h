@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "server/channel/settings.h"
 #include "server/feed/steering.h"
-#include "server/ops/config.h"
 
 #include <chrono>
 #include <cstdint>
@@ -25,7 +25,7 @@ public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
     /// `scene` must outlive it. In real time the scene's time begins at `begin`; without it, with the first frame.
-    ChannelClock(const ops::Config& config, const scene::Scene& scene, std::optional<TimePoint> begin = std::nullopt);
+    ChannelClock(const Settings& settings, const scene::Scene& scene, std::optional<TimePoint> begin = std::nullopt);
 
     /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over.
     FrameMoment next(TimePoint now);
@@ -37,7 +37,7 @@ private:
     std::int64_t scene_time_ns(TimePoint now);
 
     const scene::Scene& scene_;
-    const ops::ClockMode mode_;
+    const ClockMode mode_;
     const double fps_;
     const std::uint32_t loop_frames_;
     const std::optional<double> fixed_time_s_;

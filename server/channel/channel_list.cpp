@@ -21,15 +21,15 @@ double seconds_since(Clock::time_point begin) {
 
 } // namespace
 
-ChannelList::ChannelList(const ops::Config& config, metrics::Registry& registry) {
-    if (!config.channels.empty()) {
-        device_.emplace(gpu::DeviceOptions{.name_contains = config.device, .validation = config.has_validation});
+ChannelList::ChannelList(const Settings& settings, metrics::Registry& registry) {
+    if (!settings.channels.empty()) {
+        device_.emplace(gpu::DeviceOptions{.name_contains = settings.device, .validation = settings.has_validation});
         log::info("device", {{"name", device_->info().name}, {"driver", device_->info().driver}});
     }
-    start_channels(config, registry);
-    limit_view_memory(config);
-    start_replays(config, registry);
-    start_recorders(config, registry);
+    start_channels(settings, registry);
+    limit_view_memory(settings);
+    start_replays(settings, registry);
+    start_recorders(settings, registry);
 }
 
 void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
@@ -41,11 +41,15 @@ void ChannelList::add_feed(const std::shared_ptr<feed::Feed>& feed) {
     feeds_.push_back(feed);
 }
 
-void ChannelList::start_channels(const ops::Config& config, metrics::Registry& registry) {
-    for (const ops::ChannelChoice& choice : config.channels) {
+void ChannelList::start_channels(const Settings& settings, metrics::Registry& registry) {
+    for (const ChannelChoice& choice : settings.channels) {
         const auto begin = Clock::now();
-        start_channel({.device = *device_, .config = config, .turns = turns_, .registry = registry,
-                       .view_memory = view_memory_}, choice);
+        start_channel({.device = *device_,
+                       .settings = settings,
+                       .turns = turns_,
+                       .registry = registry,
+                       .view_memory = view_memory_},
+                      choice);
         const feed::ChannelInfo& info = feeds_.back()->info();
         log::info("channel ready", {{"channel", info.name},
                                     {"scene", scene::to_hex(info.scene_hash)},
@@ -57,31 +61,29 @@ void ChannelList::start_channels(const ops::Config& config, metrics::Registry& r
     }
 }
 
-void ChannelList::start_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice) {
+void ChannelList::start_channel(const Channel::Shared& shared, const ChannelChoice& choice) {
     if (choice.control != feed::CameraControl::kOwn) {
         channels_.push_back(std::make_unique<Channel>(shared, choice));
         return add_feed(channels_.back()->feed());
     }
     if (!own_cameras_) {
-        own_cameras_.emplace(camera::Limits{.max_cameras = shared.config.limits.max_own_cameras,
-                                            .max_ms_per_second = shared.config.own_camera_budget_ms},
-                             shared.registry);
+        own_cameras_.emplace(shared.settings.own_cameras, shared.registry);
     }
     add_feed(open_own_channel(shared, choice, *own_cameras_));
 }
 
 // Half of what is free now that all channels are there: views in memory, frames on their way and others need the rest.
-void ChannelList::limit_view_memory(const ops::Config& config) {
+void ChannelList::limit_view_memory(const Settings& settings) {
     if (!device_) {
         return;
     }
     const std::uint64_t free = gpu::free_memory_bytes(*device_);
-    view_memory_->set_limit(config.max_view_memory.value_or(free / 2));
+    view_memory_->set_limit(settings.max_view_memory.value_or(free / 2));
     log::info("memory for views", {{"limit_bytes", view_memory_->limit()}, {"free_bytes", free}});
 }
 
-void ChannelList::start_replays(const ops::Config& config, metrics::Registry& registry) {
-    for (const recording::ReplaySetup& setup : config.replays) {
+void ChannelList::start_replays(const Settings& settings, metrics::Registry& registry) {
+    for (const recording::ReplaySetup& setup : settings.replays) {
         const auto begin = Clock::now();
         replays_.push_back(std::make_unique<recording::Replay>(setup, registry));
         add_feed(replays_.back()->feed());
@@ -99,16 +101,17 @@ void ChannelList::start_replays(const ops::Config& config, metrics::Registry& re
     }
 }
 
-void ChannelList::start_recorders(const ops::Config& config, metrics::Registry& registry) {
-    for (const ops::RecordChoice& record : config.records) {
+void ChannelList::start_recorders(const Settings& settings, metrics::Registry& registry) {
+    for (const RecordChoice& record : settings.records) {
         const auto found = std::ranges::find_if(
             feeds_, [&](const auto& feed) { return record.channel.empty() || feed->info().name == record.channel; });
         FC_ASSERT(found != feeds_.end(), "the configuration names a channel that is not there");
-        recording::RecorderSetup setup{.file = record.file, .selections = {}, .max_frames = config.record_frames};
-        for (const recording::RecordedForm& form : config.record_forms) {
+        recording::ChannelRecorderSetup setup{
+            .file = record.file, .selections = {}, .max_frames = settings.record_frames};
+        for (const recording::RecordedForm& form : settings.record_forms) {
             setup.selections.push_back(recording::selection_of(form, (*found)->info()));
         }
-        recorders_.push_back(std::make_unique<recording::Recorder>(*found, std::move(setup), registry));
+        recorders_.push_back(std::make_unique<recording::ChannelRecorder>(*found, std::move(setup), registry));
     }
 }
 

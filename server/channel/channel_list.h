@@ -4,7 +4,7 @@
 #include "core/gpu/device.h"
 #include "server/camera/own_cameras.h"
 #include "server/channel/channel.h"
-#include "server/recording/recorder.h"
+#include "server/recording/channel_recorder.h"
 #include "server/recording/replay.h"
 
 #include <memory>
@@ -17,18 +17,18 @@ namespace fieldcast::channel {
 /// rendered.
 class ChannelList {
 public:
-    /// All channels are ready when constructed. `config` and `registry` must outlive it. Throws UserError if a scene or
-    /// a recording is not usable, or two channels have one name.
-    ChannelList(const ops::Config& config, metrics::Registry& registry);
+    /// All channels are ready when constructed. `settings` and `registry` must outlive it. Throws UserError if a scene
+    /// or a recording is not usable, or two channels have one name.
+    ChannelList(const Settings& settings, metrics::Registry& registry);
 
     const std::vector<std::shared_ptr<feed::Feed>>& feeds() const { return feeds_; } ///< those of scenes first
 
 private:
-    void start_channels(const ops::Config& config, metrics::Registry& registry);
-    void start_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice);
-    void limit_view_memory(const ops::Config& config);
-    void start_replays(const ops::Config& config, metrics::Registry& registry);
-    void start_recorders(const ops::Config& config, metrics::Registry& registry);
+    void start_channels(const Settings& settings, metrics::Registry& registry);
+    void start_channel(const Channel::Shared& shared, const ChannelChoice& choice);
+    void limit_view_memory(const Settings& settings);
+    void start_replays(const Settings& settings, metrics::Registry& registry);
+    void start_recorders(const Settings& settings, metrics::Registry& registry);
     void add_feed(const std::shared_ptr<feed::Feed>& feed);
 
     std::optional<gpu::Device> device_;
@@ -38,7 +38,7 @@ private:
     std::optional<camera::OwnCameras> own_cameras_;
     std::vector<std::unique_ptr<Channel>> channels_;
     std::vector<std::unique_ptr<recording::Replay>> replays_;
-    std::vector<std::unique_ptr<recording::Recorder>> recorders_; ///< end before what they record
+    std::vector<std::unique_ptr<recording::ChannelRecorder>> recorders_; ///< end before what they record
 };
 
 } // namespace fieldcast::channel

@@ -62,6 +62,38 @@ std::vector<Batch> batches_of(const feed::Demand& demand) {
 
 } // namespace
 
+FrameRenderer::FrameRenderer(const gpu::Device& device, const Settings& settings, const ChannelChoice& channel)
+    : device_(device), settings_(settings), render_settings_(settings.render) {
+    info_.name = channel.name;
+    load(channel);
+    settle_lattice(channel);
+    limit_views();
+    settle_guard_band();
+    warm_up();
+}
+
+FrameRenderer::FrameRenderer(const gpu::Device& device, const Settings& settings, const SettledChannel& settled)
+    : device_(device), settings_(settings), scene_(settled.scene), camera_node_(settled.camera_node),
+      fixed_camera_(settled.fixed_camera), render_settings_(settled.settings), info_(settled.info) {
+    make_renderers(settled.traversal, settled.visibility);
+}
+
+SettledChannel FrameRenderer::settled() const {
+    return {.scene = scene_,
+            .camera_node = camera_node_,
+            .traversal = gpu_scene_->traversal(),
+            .visibility = gpu_scene_->visibility(),
+            .fixed_camera = fixed_camera_,
+            .settings = render_settings_,
+            .info = info_};
+}
+
+void FrameRenderer::make_renderers(scene::Traversal traversal, scene::VisibilityMethod visibility) {
+    gpu_scene_ = std::make_unique<scene::GpuScene>(device_, *scene_, traversal, visibility);
+    source_renderer_ = std::make_unique<render::SourceRenderer>(device_, *gpu_scene_);
+    grid_renderer_ = std::make_unique<render::GridRenderer>(device_, *gpu_scene_);
+}
+
 bool is_same_batch(const wire::ViewFormat& a, wire::ViewFormat b) {
     b.encoding = a.encoding;
     return a == b;
@@ -73,19 +105,19 @@ FrameHeader FrameRenderer::pose(std::uint64_t frame_id, const FrameMoment& momen
     header.frame_id = frame_id;
     header.scene_time_ns = moment.scene_time_ns;
     header.cut = moment.cut;
-    header.seed = config_.seed;
+    header.seed = settings_.seed;
     header.noise_frame = moment.noise_frame;
     header.source = fixed_camera_
                         ? *fixed_camera_
-                        : render::source_camera(*gpu_scene_, *camera_node_, config_.width_px, config_.height_px);
+                        : render::source_camera(*gpu_scene_, *camera_node_, settings_.width_px, settings_.height_px);
     if (moment.pose) {
         header.applied_pose = AppliedPose{moment.pose->lease, moment.pose->sequence, moment.pose->client_time_ns};
         header.source.world_from_camera = moment.pose->world_from_camera;
     }
     header.guard_band = info_.guard_band;
-    header.source_positions = config_.source_positions;
+    header.source_positions = settings_.source_positions;
     header.source_geometry = info_.largest_grid.geometry;
-    header.settings = settings_;
+    header.settings = render_settings_;
     return header;
 }
 
@@ -142,7 +174,7 @@ std::vector<RenderedViews> FrameRenderer::render_views(const render::SourcePlane
 
 // Admission counts what clients want; others may have taken the device's memory since.
 bool FrameRenderer::has_memory_for(const render::ViewRequest& request) const {
-    const std::uint64_t missing = grid_renderer_->missing_bytes(settings_, request);
+    const std::uint64_t missing = grid_renderer_->missing_bytes(render_settings_, request);
     const std::uint64_t free = missing > 0 ? gpu::free_memory_bytes(device_) : 0;
     if (missing > free) {
         log::warn("no memory for views", {{"channel", info_.name},
@@ -169,16 +201,16 @@ std::optional<image::RgbF32> FrameRenderer::path_trace(const FrameMoment& moment
     RenderSettings settings = header.settings;
     settings.indirect_clamp = 0.0F;
     render::ReferenceRenderer renderer(device_, *gpu_scene_);
-    renderer.start(view_camera(header.source, info_.largest_grid.geometry, position, info_.fovy_rad, config_.width_px,
-                               config_.height_px));
+    renderer.start(view_camera(header.source, info_.largest_grid.geometry, position, info_.fovy_rad, settings_.width_px,
+                               settings_.height_px));
     while (renderer.samples_per_pixel() < samples) {
         if (progress(renderer.samples_per_pixel())) {
             return std::nullopt;
         }
         settings.samples_per_pixel = std::min(kBatch, samples - renderer.samples_per_pixel());
-        renderer.accumulate(settings, config_.seed);
+        renderer.accumulate(settings, settings_.seed);
     }
-    return image::RgbF32{config_.width_px, config_.height_px, renderer.image()};
+    return image::RgbF32{settings_.width_px, settings_.height_px, renderer.image()};
 }
 
 std::uint64_t FrameRenderer::invalid_sample_count() const {

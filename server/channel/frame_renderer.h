@@ -8,9 +8,9 @@
 #include "core/render/warp/warp_planes.h"
 #include "core/scene/gpu_scene.h"
 #include "server/channel/channel_clock.h"
+#include "server/channel/settings.h"
 #include "server/feed/channel_info.h"
 #include "server/feed/encoded_frame.h"
-#include "server/ops/config.h"
 
 #include <functional>
 #include <memory>
@@ -58,11 +58,11 @@ class FrameRenderer {
 public:
     /// Loads the scene, settles guard band and exposure, renders once so that every kernel is compiled.
     /// Throws UserError if the scene is not usable.
-    FrameRenderer(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel);
+    FrameRenderer(const gpu::Device& device, const Settings& settings, const ChannelChoice& channel);
 
     /// Shares the scene that is loaded, and has everything on the device for itself. `settled` may come from a renderer
     /// that has gone.
-    FrameRenderer(const gpu::Device& device, const ops::Config& config, const SettledChannel& settled);
+    FrameRenderer(const gpu::Device& device, const Settings& settings, const SettledChannel& settled);
 
     SettledChannel settled() const;
     const feed::ChannelInfo& info() const { return info_; }
@@ -79,13 +79,13 @@ public:
     std::optional<image::RgbF32> path_trace(const FrameMoment& moment, LatticePosition position, std::uint32_t samples,
                                             const std::function<bool(std::uint32_t)>& progress);
 
-    float exposure() const { return settings_.exposure; }
+    float exposure() const { return render_settings_.exposure; }
     std::uint64_t invalid_sample_count() const; ///< must stay 0
 
 private:
-    void load(const ops::ChannelChoice& channel);
+    void load(const ChannelChoice& channel);
     void make_renderers(scene::Traversal traversal, scene::VisibilityMethod visibility);
-    void settle_lattice(const ops::ChannelChoice& choice);
+    void settle_lattice(const ChannelChoice& choice);
     void limit_views();
     void settle_guard_band();
     void check_planes(const Camera& source) const;
@@ -97,7 +97,7 @@ private:
     std::vector<RenderedViews> render_views(const render::SourcePlanes& source, const feed::Demand& demand);
 
     const gpu::Device& device_;
-    const ops::Config& config_;
+    const Settings& settings_;
     std::shared_ptr<const scene::Scene> scene_; ///< at a fixed address: the renderers refer to it
     const scene::CameraNode* camera_node_ = nullptr;
     std::unique_ptr<scene::GpuScene> gpu_scene_;
@@ -105,7 +105,7 @@ private:
     std::unique_ptr<render::GridRenderer> grid_renderer_;
     std::unique_ptr<render::WarpPlanesRenderer> warp_planes_; ///< null before somebody wants them
     std::optional<Camera> fixed_camera_;
-    RenderSettings settings_;
+    RenderSettings render_settings_;
     feed::ChannelInfo info_;
 };
 

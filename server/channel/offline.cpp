@@ -50,7 +50,7 @@ Plane display_plane(const image::RgbF32& linear, float exposure) {
     return plane;
 }
 
-bool write_references(FrameRenderer& renderer, const FrameMoment& moment, const ops::OfflineJob& job,
+bool write_references(FrameRenderer& renderer, const FrameMoment& moment, const OfflineJob& job,
                       const OfflineProgress& progress) {
     const ViewGrid& grid = renderer.info().largest_grid;
     const auto positions = lattice_positions(grid);
@@ -76,17 +76,17 @@ bool write_references(FrameRenderer& renderer, const FrameMoment& moment, const 
 
 } // namespace
 
-FrameMoment offline_moment(const ops::Config& config, std::uint32_t frame) {
-    const double time_s = config.fixed_time_s.value_or(frame / static_cast<double>(config.frames_per_second));
+FrameMoment offline_moment(const Settings& settings, std::uint32_t frame) {
+    const double time_s = settings.fixed_time_s.value_or(frame / static_cast<double>(settings.frames_per_second));
     return {.scene_time_ns = static_cast<std::int64_t>(time_s * 1e9), .cut = frame == 0, .noise_frame = frame};
 }
 
-bool render_offline(const gpu::Device& device, const ops::Config& config, const ops::ChannelChoice& channel,
-                    const ops::OfflineJob& job, const OfflineProgress& progress) {
-    FrameRenderer renderer(device, config, channel);
+bool render_offline(const gpu::Device& device, const Settings& settings, const ChannelChoice& channel,
+                    const OfflineJob& job, const OfflineProgress& progress) {
+    FrameRenderer renderer(device, settings, channel);
     const std::uint32_t last = job.frame_count - 1;
     if (job.reference_samples > 0) {
-        return write_references(renderer, offline_moment(config, last), job, progress);
+        return write_references(renderer, offline_moment(settings, last), job, progress);
     }
     const ViewGrid& grid = renderer.info().largest_grid;
     const feed::Demand demand = whole_grid(renderer.info(), job.products.source_exr);
@@ -94,7 +94,7 @@ bool render_offline(const gpu::Device& device, const ops::Config& config, const 
         if (progress("frame " + std::to_string(frame + 1) + " of " + std::to_string(job.frame_count))) {
             return false;
         }
-        const RenderedFrame rendered = renderer.render(frame + 1, offline_moment(config, frame), demand);
+        const RenderedFrame rendered = renderer.render(frame + 1, offline_moment(settings, frame), demand);
         if (job.writes_every_frame) {
             std::array<char, 16> name{};
             std::snprintf(name.data(), name.size(), "frame_%06u", frame);

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "server/channel/offline.h"
-#include "server/ops/record_job.h"
+#include "server/channel/record_job.h"
 
 namespace fieldcast::channel {
 
 /// Renders the frames of `job` one after the other and writes them to a recording. False: `progress` asked to stop;
 /// what was recorded so far is complete. Throws UserError if the scene is not usable or the file cannot be written.
-bool record_offline(const gpu::Device& device, const ops::Config& config, const ops::RecordJob& job,
+bool record_offline(const gpu::Device& device, const Settings& settings, const RecordJob& job,
                     const OfflineProgress& progress);
 
 } // namespace fieldcast::channel

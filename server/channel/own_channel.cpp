@@ -42,14 +42,14 @@ camera::FrameCost measure(FrameRenderer& renderer) {
 
 } // namespace
 
-std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, const ops::ChannelChoice& choice,
+std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, const ChannelChoice& choice,
                                              camera::OwnCameras& cameras) {
     struct Server { // of all cameras of the channel; knows the feed once that is there
         SettledChannel settled;
         ChannelClock::TimePoint begin;
         std::weak_ptr<feed::Feed> feed;
     };
-    FrameRenderer renderer(shared.device, shared.config, choice);
+    FrameRenderer renderer(shared.device, shared.settings, choice);
     const camera::FrameCost cost = measure(renderer);
     const auto server =
         std::make_shared<Server>(Server{.settled = renderer.settled(), .begin = Clock::now(), .feed = {}});

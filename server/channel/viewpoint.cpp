@@ -15,24 +15,24 @@ namespace {
 
 constexpr float kDefaultSpacing_m = 0.03F; ///< where nothing of the scene is in sight
 
-float aspect_of(const ops::Config& config) {
-    return static_cast<float>(config.width_px) / static_cast<float>(config.height_px);
+float aspect_of(const Settings& settings) {
+    return static_cast<float>(settings.width_px) / static_cast<float>(settings.height_px);
 }
 
-bool is_framed(const scene::Scene& scene, const ops::Config& config) {
-    const bool is_open = config.camera.empty() && scene.cameras.empty();
-    return is_open || config.camera == scene::kFramingCamera || config.framing.any();
+bool is_framed(const scene::Scene& scene, const Settings& settings) {
+    const bool is_open = settings.camera.empty() && scene.cameras.empty();
+    return is_open || settings.camera == scene::kFramingCamera || settings.framing.any();
 }
 
-void frame(scene::Scene& scene, const ops::Config& config, const scene::RayProbe& probe, const std::string& name) {
-    const scene::Framing framing = scene::find_framing(scene, probe, config.framing, aspect_of(config));
+void frame(scene::Scene& scene, const Settings& settings, const scene::RayProbe& probe, const std::string& name) {
+    const scene::Framing framing = scene::find_framing(scene, probe, settings.framing, aspect_of(settings));
     const auto text = [](const glm::vec3& v) {
         char buffer[64];
         std::snprintf(buffer, sizeof buffer, "%.4g,%.4g,%.4g", static_cast<double>(v.x), static_cast<double>(v.y),
                       static_cast<double>(v.z));
         return std::string(buffer);
     };
-    scene::add_camera(scene, framing, config.framing.orbit_s);
+    scene::add_camera(scene, framing, settings.framing.orbit_s);
     log::info("camera framed", {{"channel", name},
                                 {"place", framing.is_inside ? "inside" : "outside"},
                                 {"look_from", text(framing.from)},
@@ -60,22 +60,22 @@ std::string camera_names(const scene::Scene& scene) {
 }
 
 /// Of the channel's largest grid, where neither flags nor file say it.
-void fit_lattice(const scene::Scene& scene, const ops::Config& config, const scene::RayProbe& probe,
+void fit_lattice(const scene::Scene& scene, const Settings& settings, const scene::RayProbe& probe,
                  const std::string& name, Viewpoint& viewpoint) {
     const scene::CameraNode& camera = scene.cameras[viewpoint.camera];
-    const auto start_ns = static_cast<std::int64_t>(config.fixed_time_s.value_or(0.0) * 1e9);
+    const auto start_ns = static_cast<std::int64_t>(settings.fixed_time_s.value_or(0.0) * 1e9);
     const glm::mat4 pose = scene::camera_pose(scene::pose_scene(scene, start_ns), camera);
-    const auto depths = scene::depth_range(probe, pose, camera.fovy_rad, aspect_of(config));
+    const auto depths = scene::depth_range(probe, pose, camera.fovy_rad, aspect_of(settings));
     if (!depths) {
         viewpoint.spacing_m = kDefaultSpacing_m;
         return;
     }
-    if (!config.has_convergence) {
+    if (!settings.has_convergence) {
         viewpoint.convergence_m = depths->middle_m;
     }
-    const std::uint32_t count = std::max({config.largest_grid.rows, config.largest_grid.cols, 2U});
+    const std::uint32_t count = std::max({settings.largest_grid.rows, settings.largest_grid.cols, 2U});
     viewpoint.spacing_m =
-        scene::comfortable_spacing(*depths, viewpoint.convergence_m, count, camera.fovy_rad, aspect_of(config));
+        scene::comfortable_spacing(*depths, viewpoint.convergence_m, count, camera.fovy_rad, aspect_of(settings));
     log::info("views fitted to the scene",
               {{"channel", name},
                {"spacing_m", static_cast<double>(viewpoint.spacing_m)},
@@ -87,25 +87,26 @@ void fit_lattice(const scene::Scene& scene, const ops::Config& config, const sce
 
 } // namespace
 
-Viewpoint settle_viewpoint(scene::Scene& scene, const ops::Config& config, const std::string& name) {
+Viewpoint settle_viewpoint(scene::Scene& scene, const Settings& settings, const std::string& name) {
     std::optional<scene::RayProbe> probe; // costs time and memory: only where the file leaves something open
     const auto rays = [&]() -> const scene::RayProbe& {
         return probe ? *probe : probe.emplace(scene, scene::pose_scene(scene, 0));
     };
-    Viewpoint viewpoint{.convergence_m = config.lattice.convergence_m};
-    if (is_framed(scene, config)) {
-        frame(scene, config, rays(), name);
+    Viewpoint viewpoint{.convergence_m = settings.lattice.convergence_m};
+    if (is_framed(scene, settings)) {
+        frame(scene, settings, rays(), name);
         viewpoint.camera = scene.cameras.size() - 1;
-    } else if (const auto index = find_index(scene, config.camera)) {
+    } else if (const auto index = find_index(scene, settings.camera)) {
         viewpoint.camera = *index;
     } else {
-        throw UserError(scene.name + ": has no camera '" + config.camera + "'; it has " + camera_names(scene));
+        throw UserError(scene.name + ": has no camera '" + settings.camera + "'; it has " + camera_names(scene));
     }
-    const std::optional<float> said_m = config.spacing_m ? config.spacing_m : scene.cameras[viewpoint.camera].spacing_m;
+    const std::optional<float> said_m =
+        settings.spacing_m ? settings.spacing_m : scene.cameras[viewpoint.camera].spacing_m;
     if (said_m) {
         viewpoint.spacing_m = *said_m;
     } else {
-        fit_lattice(scene, config, rays(), name, viewpoint);
+        fit_lattice(scene, settings, rays(), name, viewpoint);
     }
     return viewpoint;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/scene/scene.h"
-#include "server/ops/config.h"
+#include "server/channel/settings.h"
 
 #include <cstddef>
 #include <limits>
@@ -17,10 +17,10 @@ struct Viewpoint {
     float convergence_m = std::numeric_limits<float>::infinity();
 };
 
-/// The camera that `config` names, or else the file's. A file without one is framed by itself, as are scenes for which
-/// `config.framing` says something: a camera is added to `scene` then. Spacing and convergence that neither flags nor file
-/// give follow from the depths that the camera sees at the start. `name` is the channel's, for the log. Throws UserError if
-/// there is no such camera.
-Viewpoint settle_viewpoint(scene::Scene& scene, const ops::Config& config, const std::string& name);
+/// The camera that `settings` names, or else the file's. A file without one is framed by itself, as are scenes for
+/// which `settings.framing` says something: a camera is added to `scene` then. Spacing and convergence that neither
+/// flags nor file give follow from the depths that the camera sees at the start. `name` is the channel's, for the log.
+/// Throws UserError if there is no such camera.
+Viewpoint settle_viewpoint(scene::Scene& scene, const Settings& settings, const std::string& name);
 
 } // namespace fieldcast::channel

@@ -11,14 +11,14 @@
 
 namespace fieldcast::feed {
 
-/// One frame of a channel in every form that some client wanted when it was rendered. Never changed once published.
+/// One frame of a channel in every form that a client wanted when it was begun. Never changed once published.
 struct EncodedFrame {
     FrameHeader header;
     wire::ServerTimes times;        ///< without the send times, which differ between clients
-    std::uint64_t key_frame_id = 0; ///< that strips may refer to; its own id: it is a key frame; 0: there is none
+    std::uint64_t key_frame_id = 0; ///< key frame that strips may refer to; 0: none; its own id: it is a key frame
     std::optional<wire::EncodedSource> source;
     std::vector<wire::EncodedViews> views;
-    std::optional<std::chrono::steady_clock::time_point> begun{}; ///< feed::Demand::begun; unset: nobody was asked
+    std::optional<std::chrono::steady_clock::time_point> begun{}; ///< feed::Demand::begun; unset: made without a Demand
 };
 
 using FramePtr = std::shared_ptr<const EncodedFrame>;
@@ -26,10 +26,10 @@ using FramePtr = std::shared_ptr<const EncodedFrame>;
 /// The views of that format; null if absent.
 const wire::EncodedViews* find_views(const EncodedFrame& frame, const wire::ViewFormat& format);
 
-/// Whether everything in `selection` is in `frame`. A frame begun before a client changed its selection may lack something.
+/// Whether `frame` contains everything in `selection`. A frame begun before a client changed its selection may not.
 bool covers(const EncodedFrame& frame, const Selection& selection);
 
-/// Whether a client without the key frame can be given everything in `selection`, which the frame covers.
+/// Whether everything in `selection`, which the frame must cover, can be sent to a client without the key frame.
 bool stands_alone(const EncodedFrame& frame, const Selection& selection);
 
 } // namespace fieldcast::feed

@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kNewest = 4; // a new frame counts for a quarter
+constexpr int kNewest = 4; // a new frame has the weight 1/4
 
 std::shared_ptr<Steering> steering_of(const ChannelInfo& info, bool is_opened_by_each) {
     switch (info.control) {
@@ -36,7 +36,8 @@ Feed::Feed(ChannelInfo info, std::shared_ptr<FeedOpener> opener)
     state_.lock()->held = std::make_unique<HeldViews>(info_.view_memory, info_.bytes_per_view_pixel);
 }
 
-std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t except_id, const Selection& selection) const {
+std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t except_id,
+                                                const Selection& selection) const {
     Demand demand;
     for (const auto& [id, subscriber] : state.subscribers) {
         if (id != except_id) {
@@ -52,7 +53,7 @@ std::optional<std::string> Feed::budget_problem(State& state, std::uint64_t exce
     }
     return "channel '" + info_.name + "' would encode " + std::to_string(pixels) +
            " pixels per frame for all clients, at most " + std::to_string(info_.max_view_pixels) +
-           "; ask for fewer or smaller views, or for what others get: lattice, codec and quality";
+           "; ask for fewer or smaller views, or for the lattice, codec and quality of another client";
 }
 
 std::uint64_t Feed::encoded_pixels(const Demand& demand) const {
@@ -94,7 +95,7 @@ std::optional<std::string> Feed::change(std::uint64_t id, const Selection& selec
         state->shrunk = Clock::now();
         ++state->changes;
     }
-    demand_changed_.notify_all(); // it may be due at once
+    demand_changed_.notify_all(); // a frame may be due at once
     return std::nullopt;
 }
 
@@ -124,10 +125,10 @@ void Feed::remove(std::uint64_t id) {
     for (const auto& [other, subscriber] : state->subscribers) {
         add(left, subscriber.selection);
     }
-    FC_ASSERT(!state->held->want(left), "less than before is always possible");
+    FC_ASSERT(!state->held->want(left), "a smaller demand is always possible");
     state->shrunk = Clock::now();
     ++state->changes;
-    demand_changed_.notify_all(); // what nobody wants is to be forgotten later
+    demand_changed_.notify_all(); // unwanted views are to be freed after kKeepViews
 }
 
 std::optional<Demand> Feed::surplus(TimePoint now) {
@@ -160,7 +161,7 @@ Demand Feed::demand(TimePoint now) {
     return demand;
 }
 
-// A frame begins one interval after the one before, or when that one is rendered.
+// A frame begins one interval after the previous one, or as soon as that one is rendered, whichever is later.
 Feed::TimePoint::duration Feed::lead(const State& state) const {
     const auto interval = std::chrono::duration_cast<TimePoint::duration>(frame_interval(frames_per_second()));
     return state.frame_time + std::max(state.frame_time, interval);
@@ -178,7 +179,7 @@ Feed::TimePoint Feed::wakes_at(const State& state, TimePoint now) const {
 }
 
 void Feed::wake() {
-    { auto state = state_.lock(); } // not between a waiter's test and its sleep
+    { auto state = state_.lock(); } // else a waiter between its test and its sleep would miss the notification
     demand_changed_.notify_all();
 }
 

@@ -15,10 +15,10 @@ namespace fieldcast::feed {
 class Feed;
 class OwnFeed;
 
-/// What somebody wants of a camera of its own.
+/// Load that one client puts on its own camera.
 struct CameraLoad {
     float frames_per_second = 0.0F;
-    std::uint64_t view_pixels = 0; ///< of all views of a frame that the server makes
+    std::uint64_t view_pixels = 0; ///< in all views that the server makes, per frame
 
     bool operator==(const CameraLoad&) const = default;
 };
@@ -28,18 +28,18 @@ class FeedOpener : public std::enable_shared_from_this<FeedOpener> {
 public:
     virtual ~FeedOpener() = default;
 
-    /// A feed that nobody else sees; its frames begin when its camera is ready. Refused with a reason that says what
-    /// was asked and what is left. `replaced`, if any, is a feed of the same server, of this channel or another, that
-    /// the caller closes once it has the new one: what it takes counts as free, and its camera goes before the new one
-    /// comes.
+    /// A feed for the caller alone; its frames begin when its camera is ready. On refusal, the reason names the amount
+    /// that was asked for and the amount that is left. `replaced`, if any, is a feed of this or another channel of the
+    /// same server that the caller closes once it has the new one: its resources count as free, and its camera ends
+    /// before the new one is made.
     virtual tl::expected<OwnFeed, std::string> open(const CameraLoad& load, const OwnFeed* replaced = nullptr) = 0;
 
-    /// The longest time that the subscriber of an open feed has been waiting for a frame; 0: nobody is.
+    /// Longest time that the subscriber of an open feed has been waiting for a frame; 0: none is waiting.
     virtual std::chrono::nanoseconds waiting_time(std::chrono::steady_clock::time_point now) = 0;
 
 private:
     friend class OwnFeed;
-    /// Of an open feed. On refusal it stays as it was.
+    /// Changes the load of an open feed. Returns the reason of a refusal, after which the old load stays.
     virtual std::optional<std::string> change(std::uint64_t id, const CameraLoad& load) = 0;
     virtual void close(std::uint64_t id) = 0;
 };
@@ -47,7 +47,7 @@ private:
 /// An open feed; closes when destroyed.
 class OwnFeed {
 public:
-    OwnFeed() = default; ///< none
+    OwnFeed() = default; ///< not open
     OwnFeed(std::shared_ptr<FeedOpener> opener, std::uint64_t id, std::shared_ptr<Feed> feed)
         : opener_(std::move(opener)), id_(id), feed_(std::move(feed)) {}
     OwnFeed(OwnFeed&& other) noexcept
@@ -63,11 +63,11 @@ public:
     }
     ~OwnFeed() { close(); }
 
-    std::uint64_t id() const { return id_; }                              ///< among all of a server
-    const std::shared_ptr<Feed>& feed() const { return feed_; }           ///< null: none
-    const std::shared_ptr<FeedOpener>& opener() const { return opener_; } ///< null: none
+    std::uint64_t id() const { return id_; }                              ///< unique in a server
+    const std::shared_ptr<Feed>& feed() const { return feed_; }           ///< null: not open
+    const std::shared_ptr<FeedOpener>& opener() const { return opener_; } ///< null: not open
 
-    /// Empty: it has what it asked for. Otherwise the reason, and it keeps what it had.
+    /// Changes the load. Returns the reason of a refusal, after which the old load stays; empty: changed.
     std::optional<std::string> change(const CameraLoad& load) { return opener_->change(id_, load); }
 
     void close() {

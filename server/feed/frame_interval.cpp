@@ -6,7 +6,7 @@
 namespace fieldcast::feed {
 
 std::chrono::nanoseconds frame_interval(float frames_per_second) {
-    const bool is_slow = !(frames_per_second >= kMinFramesPerSecond); // also what is no number
+    const bool is_slow = !(frames_per_second >= kMinFramesPerSecond); // also if it is NaN
     const double rate = static_cast<double>(is_slow ? kMinFramesPerSecond : frames_per_second);
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1.0 / rate));
 }

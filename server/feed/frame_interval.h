@@ -5,7 +5,7 @@
 
 namespace fieldcast::feed {
 
-/// Time from one frame to the next; that of the slowest rate at most, whatever a peer or a file names.
+/// Time from one frame to the next; at most that of kMinFramesPerSecond, so any number from a peer or a file is safe.
 std::chrono::nanoseconds frame_interval(float frames_per_second);
 
 } // namespace fieldcast::feed

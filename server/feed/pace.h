@@ -7,8 +7,8 @@
 
 namespace fieldcast::feed {
 
-/// Keeps somebody to a frame rate of its own. Frames are told apart by when they were begun, so that who asks for them
-/// and who takes them agree.
+/// Limits one subscriber to a frame rate of its own. A frame is identified by the time at which it was begun, so that
+/// the feed, which orders it, and the session, which takes it, decide alike. Not thread-safe.
 class Pace {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
@@ -17,16 +17,16 @@ public:
     Pace() = default; ///< no cap: always due
     explicit Pace(Interval interval) : interval_(interval) {}
 
-    /// Whether a frame that is begun at `begin` is not too soon.
+    /// Whether a frame begun at `begin` is not too early.
     bool is_due(TimePoint begin) const { return begin >= earliest(); }
 
-    /// When the next one is not too soon: a quarter early, since frames of a channel are not evenly spaced.
+    /// Earliest begin of the next frame: a quarter of an interval before it is due, since frames are not evenly spaced.
     TimePoint earliest() const { return due_ ? *due_ - step() / 4 : TimePoint(); }
 
-    /// When the next one is due; long ago: at once.
+    /// When the next frame is due; the origin of the clock if none was taken: at once.
     TimePoint due() const { return due_.value_or(TimePoint()); }
 
-    /// A frame that is begun at `begin` is taken.
+    /// A frame begun at `begin` is taken.
     void take(TimePoint begin) {
         if (interval_) {
             const bool goes_on = due_ && begin < *due_ + step();
@@ -38,7 +38,7 @@ private:
     TimePoint::duration step() const { return std::chrono::duration_cast<TimePoint::duration>(*interval_); }
 
     std::optional<Interval> interval_; ///< unset: no cap
-    std::optional<TimePoint> due_;     ///< unset: nothing was taken yet
+    std::optional<TimePoint> due_;     ///< unset: no frame was taken yet
 };
 
 } // namespace fieldcast::feed

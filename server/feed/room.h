@@ -6,19 +6,19 @@
 #include <chrono>
 #include <optional>
 
-// For which frames a subscriber counts.
+// Times at which a subscriber's selection counts.
 namespace fieldcast::feed {
 
-/// Whether a subscriber could begin to send one more frame.
+/// Whether a subscriber can begin to send one more frame.
 struct Room {
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    /// A frame waits already, for credit or for the one before. It is expected to be begun at that time; empty: none
-    /// waits, and a frame that comes is begun or waits in its place.
+    /// Expected time at which the waiting frame is begun; it waits for credit or for the frame before. Empty: no frame
+    /// waits, and the next one is begun or waits.
     std::optional<TimePoint> taken_until = std::nullopt;
 };
 
-/// When the selection of a subscriber counts, from and until inclusive.
+/// Time span in which the selection of a subscriber counts, both ends inclusive.
 struct Window {
     using TimePoint = Room::TimePoint;
 
@@ -28,9 +28,8 @@ struct Window {
     bool contains(TimePoint now) const { return from <= now && now <= until; }
 };
 
-/// Without room it counts around the time at which there will be some: frames that begin `lead` before are ready then,
-/// so nothing is late and the frame that waits is replaced by a fresh one. If that time passes, nothing more is made for
-/// it until it says that there is room.
+/// Without room, a selection counts around the expected time of having room: a frame begun `lead` before is ready then
+/// and replaces the waiting one. If that time passes, the selection does not count until the subscriber reports room.
 inline Window window_of(const Room& room, const Pace& pace, std::chrono::steady_clock::duration lead) {
     if (room.taken_until) {
         return {.from = std::max(*room.taken_until - lead, pace.earliest()), .until = *room.taken_until + lead};

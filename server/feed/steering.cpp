@@ -11,7 +11,7 @@ std::optional<SteeredPose> Steering::sample() {
     auto state = state_.lock();
     std::optional<SteeredPose> pose = state->newest;
     if (state->newest) {
-        state->newest->cut = false; // said once
+        state->newest->cut = false; // reported once
     }
     return pose;
 }

@@ -10,48 +10,48 @@
 #include <variant>
 #include <vector>
 
-// Who steers the camera of a channel: one at a time, as long as it goes on; others wait in a queue.
+// The right to steer the camera of a channel: one client has it at a time, the others wait in a queue.
 namespace fieldcast::feed {
 
-/// What somebody may do with a camera that can be steered.
+/// Right of a client at a camera that can be steered.
 enum class SteeringRight : std::uint8_t {
     kNone,
-    kSteer, ///< when nobody else does
-    kTake,  ///< also from whoever steers
+    kSteer, ///< while no other client steers
+    kTake,  ///< also takes the camera from the client that steers
 };
 
-/// Somebody who may ask to steer.
+/// A client that may ask to steer.
 struct Steerer {
-    std::string name; ///< for the others to see
+    std::string name; ///< shown to the other clients
     SteeringRight right = SteeringRight::kNone;
 };
 
-/// How somebody asks to steer.
+/// How urgently a client asks to steer.
 enum class SteeringUrgency : std::uint8_t {
     kNow,  ///< now or not at all
-    kWait, ///< now, or when it is my turn
-    kTake, ///< now, whoever steers; needs SteeringRight::kTake
+    kWait, ///< now, or after waiting in the queue
+    kTake, ///< now, even from another client; needs SteeringRight::kTake
 };
 
-/// You steer from now on.
+/// The client steers from now on.
 struct SteeringGrant {
-    std::uint64_t lease = 0; ///< number of the lease, > 0, grows
+    std::uint64_t lease = 0; ///< number of the lease, > 0, increases
 
     bool operator==(const SteeringGrant&) const = default;
 };
 
-/// You do not steer.
+/// The client's request was denied.
 struct SteeringDenial {
     enum class Reason : std::uint8_t { kRoleTooLow, kHeld };
     Reason reason = Reason::kHeld;
-    std::string holder;      ///< who does
-    bool is_waiting = false; ///< you are in the queue
-    std::uint32_t ahead = 0; ///< so many are in it before you
+    std::string holder;      ///< name of the client that steers; empty: none
+    bool is_waiting = false; ///< the client is in the queue
+    std::uint32_t ahead = 0; ///< clients before it in the queue
 
     bool operator==(const SteeringDenial&) const = default;
 };
 
-/// You have steered; you do not any more.
+/// The client's lease has ended.
 struct SteeringLoss {
     enum class Reason : std::uint8_t { kReleased, kHandedOver, kTaken, kExpired };
     std::uint64_t lease = 0;
@@ -62,35 +62,36 @@ struct SteeringLoss {
 
 using SteeringNotice = std::variant<SteeringGrant, SteeringDenial, SteeringLoss>;
 
-/// The right to steer one camera. Whoever holds it keeps it while it renews it in time. Not thread-safe; `now` must not
-/// go backwards. Every call first looks whether the lease has run out.
+/// The right to steer one camera. The holder keeps it while it renews it in time. Not thread-safe; `now` must not go
+/// backwards. Every call with `now` first checks whether the lease has expired.
 class SteeringLease {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
     using Id = std::uint64_t; ///< of a steerer, > 0
 
-    /// `length`: how long a lease lasts that is not renewed.
+    /// `length`: time after which a lease expires unless it is renewed.
     explicit SteeringLease(std::chrono::milliseconds length) : length_(length) {}
 
-    Id join(Steerer steerer); ///< somebody comes
-    void leave(Id id, TimePoint now); ///< and goes: its lease and its place in the queue go with it
+    Id join(Steerer steerer);         ///< adds a client
+    void leave(Id id, TimePoint now); ///< removes a client; its lease and its place in the queue end
 
-    /// Answered by notices: a grant or a denial.
+    /// Asks for the lease; the answer is a notice, a grant or a denial.
     void request(Id id, SteeringUrgency urgency, TimePoint now);
 
-    /// False: `id` does not hold the lease.
+    /// Prolongs the lease. False: `id` does not hold it.
     bool renew(Id id, TimePoint now);
 
-    /// Gives the lease, or the place in the queue, up. Who waits longest gets the lease.
+    /// Gives up the lease or the place in the queue. The client that has waited longest gets the lease.
     void release(Id id, TimePoint now);
 
-    /// Gives the lease to who waits longest, or, if nobody does, to the next one who asks; until then it stays.
+    /// Hands the lease to the client that has waited longest. If none waits, the holder keeps it until another client
+    /// asks.
     void offer(Id id, TimePoint now);
 
-    void look_at_clock(TimePoint now);
+    void look_at_clock(TimePoint now); ///< ends the lease if it has expired
 
-    std::optional<SteeringNotice> next_notice(Id id); ///< for `id`, oldest first
-    std::uint64_t lease() const { return holder_ ? lease_ : 0; } ///< number of the one that is held; 0: none is
+    std::optional<SteeringNotice> next_notice(Id id); ///< for `id`, oldest first; empty: none
+    std::uint64_t lease() const { return holder_ ? lease_ : 0; } ///< number of the lease that is held; 0: none
 
 private:
     struct Member {
@@ -99,7 +100,7 @@ private:
     };
 
     void grant(Id id, TimePoint now);
-    void dismiss(SteeringLoss::Reason reason); ///< the holder
+    void dismiss(SteeringLoss::Reason reason); ///< takes the lease from the holder
     void grant_next(TimePoint now);
     void deny(Id id, SteeringDenial::Reason reason);
     void remove_from_queue(Id id);

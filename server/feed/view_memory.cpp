@@ -7,7 +7,7 @@ namespace fieldcast::feed {
 
 namespace {
 
-constexpr std::uint64_t kCornerViews = 4; ///< that the renderer may add to a set, to fill holes
+constexpr std::uint64_t kCornerViews = 4; ///< views that the renderer may add to a set to fill holes
 
 std::vector<ViewDemand> without_encoding(const Demand& demand) {
     std::vector<ViewDemand> sets;
@@ -25,7 +25,7 @@ std::vector<ViewDemand> without_encoding(const Demand& demand) {
     return sets;
 }
 
-/// Of each set the larger one.
+/// Every set of both lists; of equal formats, the one with more positions.
 std::vector<ViewDemand> larger(std::vector<ViewDemand> sets, const std::vector<ViewDemand>& others) {
     for (const ViewDemand& other : others) {
         const auto same = std::ranges::find(sets, other.format, &ViewDemand::format);
@@ -54,7 +54,7 @@ bool ViewMemory::take(std::uint64_t bytes) {
 HeldViews::~HeldViews() {
     settle({});
     if (memory_ != nullptr) {
-        memory_->give_back(bytes_of(held_)); // what is wanted still
+        memory_->give_back(bytes_of(held_)); // the views that are still wanted
     }
 }
 
@@ -72,10 +72,10 @@ std::optional<std::string> HeldViews::want(const Demand& demand) {
     const std::uint64_t before = bytes_of(held_);
     const std::uint64_t after = bytes_of(held);
     if (memory_ != nullptr && after > before && !memory_->take(after - before)) {
-        return "views of all clients would take " + std::to_string(after - before) +
-               " bytes more of the device's memory; " + std::to_string(memory_->used()) + " of " +
+        return "the views of all clients would need " + std::to_string(after - before) +
+               " more bytes of the device's memory; " + std::to_string(memory_->used()) + " of " +
                std::to_string(memory_->limit()) +
-               " are in use, and what clients leave is free after a few seconds; ask for fewer or smaller views";
+               " are in use; unused views are freed after a few seconds; ask for fewer or smaller views";
     }
     wanted_ = std::move(wanted);
     held_ = std::move(held);

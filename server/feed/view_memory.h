@@ -8,8 +8,7 @@
 #include <optional>
 #include <string>
 
-// Memory of the device that clients make the server allocate: what views need while they are made and from frame to
-// frame.
+// Device memory that the server allocates for clients' views: while they are made, and from frame to frame.
 namespace fieldcast::feed {
 
 /// A budget in bytes, shared by all channels and own cameras of a device. Thread-safe.
@@ -17,12 +16,12 @@ class ViewMemory {
 public:
     explicit ViewMemory(std::uint64_t limit_bytes) : limit_(limit_bytes) {}
 
-    /// Before anything is taken.
+    /// Must be called before anything is taken.
     void set_limit(std::uint64_t bytes) { limit_ = bytes; }
     std::uint64_t limit() const { return limit_; }
     std::uint64_t used() const { return used_; }
 
-    /// False: it does not fit, and nothing was taken.
+    /// Takes `bytes` from the budget. False: they do not fit, and nothing was taken.
     bool take(std::uint64_t bytes);
     void give_back(std::uint64_t bytes) { used_ -= bytes; }
 
@@ -31,8 +30,8 @@ private:
     std::atomic<std::uint64_t> used_ = 0;
 };
 
-/// What one channel has of the budget, by sets of views of the same geometry, field of view and size. What nobody wants
-/// any more counts until the channel has given its memory back. Not thread-safe.
+/// The views of one channel that occupy device memory, in sets of the same geometry, field of view and size. Views that
+/// no client wants any more count until the channel has freed their memory. Not thread-safe.
 class HeldViews {
 public:
     /// `memory` may be null: no limit.
@@ -42,15 +41,15 @@ public:
     HeldViews(const HeldViews&) = delete;
     HeldViews& operator=(const HeldViews&) = delete;
 
-    /// From now on these views are wanted, whatever their encoding. Otherwise the problem, with the numbers, and all
-    /// stays as it was; less than before is always possible.
+    /// Sets the wanted views; their encoding does not matter. If they do not fit, nothing changes and the problem is
+    /// returned, with the numbers. A smaller demand is always possible.
     std::optional<std::string> want(const Demand& demand);
 
-    /// Whether more is held than wanted.
+    /// Whether more views are held than wanted.
     bool has_surplus() const { return bytes_of(held_) > bytes_of(wanted_); }
     const std::vector<ViewDemand>& wanted() const { return wanted_; }
 
-    /// The channel holds `kept` at most.
+    /// The channel has freed all views except `kept`; wanted views stay counted.
     void settle(const std::vector<ViewDemand>& kept);
 
 private:
@@ -59,7 +58,7 @@ private:
     std::shared_ptr<ViewMemory> memory_;
     std::uint64_t bytes_per_pixel_ = 0;
     std::vector<ViewDemand> wanted_; ///< without encoding
-    std::vector<ViewDemand> held_;   ///< of each set the larger of what is wanted and what the channel has
+    std::vector<ViewDemand> held_;   ///< per set, the larger one of the wanted views and those in device memory
 };
 
 } // namespace fieldcast::feed

@@ -17,10 +17,10 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kForEver{-1};
-constexpr milliseconds kPauseAfterFailure{100};                             // until others give descriptors back
-constexpr RateLimit::Rate kLogRate{.per_second = 1.0 / 60.0, .burst = 3.0}; // strangers must not fill the disk
+constexpr milliseconds kPauseAfterFailure{100};                             // until descriptors are closed
+constexpr RateLimit::Rate kLogRate{.per_second = 1.0 / 60.0, .burst = 3.0}; // callers must not fill the disk
 
-/// Names a socket for as long as the machine runs; nothing if the number is none of a socket any more.
+/// A name of the socket that is unique until the machine restarts; nothing if the descriptor is no longer a socket.
 std::optional<std::uint64_t> cookie_of(int socket) {
     std::uint64_t cookie = 0;
     socklen_t size = sizeof cookie;
@@ -60,7 +60,7 @@ void Acceptor::accept_until(const std::stop_token& stop) {
     }
 }
 
-/// False: there is a connection, and it cannot be had; see errno.
+/// False: a connection is waiting, but accept() failed; see errno.
 bool Acceptor::accept_one(int listening) {
     Descriptor connection(::accept4(listening, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (connection.is_open()) {
@@ -71,17 +71,17 @@ bool Acceptor::accept_one(int listening) {
     }
     const bool is_ours = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
     state_.lock()->counts.failed += is_ours ? 1 : 0;
-    return !is_ours; // otherwise the caller has gone already
+    return !is_ours; // otherwise the caller has already disconnected
 }
 
 bool Acceptor::is_admitted(int connection) {
     const auto cookie = cookie_of(connection);
     const SocketAddress caller = SocketAddress::far_end_of(connection);
     if (!cookie || caller.size == 0) {
-        return false; // the caller has gone already
+        return false; // the caller has already disconnected
     }
     if (caller.port() == privileged_port_ && caller.has_host_of(SocketAddress::local_end_of(connection))) {
-        return true; // only this process can have that port at the address that it listens on
+        return true; // only this process can use that port at the address that it listens on
     }
     const bool may_be_full = state_.lock()->open.size() >= max_connections_;
     const bool is_full = may_be_full && counts().open >= max_connections_;

@@ -12,30 +12,30 @@
 
 namespace fieldcast::listener {
 
-/// Accepts connections and hands them on, in a thread of its own. It never stops listening, whatever accept() says: a
-/// server that is out of descriptors answers again when it has some. Beyond its number of connections callers are
-/// closed at once.
+/// Accepts connections and passes them on, in a thread of its own. No error of accept() ends it: after a shortage of
+/// descriptors it accepts again as soon as there are some. Connections beyond the largest number are closed at once.
 class Acceptor {
 public:
-    /// Takes a connection that came in at `listening`; `connection` is the callee's to close.
+    /// Receives a connection accepted at the socket `listening`; the callee closes `connection`.
     using Take = std::function<void(int listening, int connection)>;
 
     /// Throws std::system_error. `sockets` must outlive this.
     Acceptor(const ListeningSockets& sockets, std::size_t max_connections, Take take);
 
-    /// The connection from this port of the machine itself is let in always and not counted: the server's own question.
+    /// Connections from this port of this machine are always accepted and not counted: they are the server's
+    /// self-probe.
     void let_in_always(int port) { privileged_port_ = port; }
 
     struct Counts {
         std::size_t open = 0;
         std::uint64_t accepted = 0;
-        std::uint64_t refused = 0; ///< there were enough
-        std::uint64_t failed = 0;  ///< accept() had no descriptor or no memory
+        std::uint64_t refused = 0; ///< closed because the limit was reached
+        std::uint64_t failed = 0;  ///< not accepted for lack of descriptors or memory
     };
     Counts counts() const;
 
 private:
-    /// A connection that was handed on. Its number may mean another one later, its cookie does not.
+    /// An accepted connection. Its descriptor number may be reused later; its cookie is unique.
     struct Handed {
         int number;
         std::uint64_t cookie;

@@ -11,8 +11,8 @@ namespace fieldcast::listener {
 
 namespace {
 
-/// Recordings, callers of /metrics, token files that are read again, what gRPC and the driver open now and then. Fewer
-/// where a quarter of all descriptors is less.
+/// Descriptors reserved for recordings, callers of /metrics, token files, and occasional needs of gRPC and the driver.
+/// At most a quarter of all descriptors is reserved.
 constexpr std::size_t kReserve = 64;
 
 } // namespace
@@ -32,7 +32,7 @@ std::size_t raise_descriptor_limit() {
     rlimit limit{};
     if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
         limit.rlim_cur = limit.rlim_max;
-        setrlimit(RLIMIT_NOFILE, &limit); // where that is refused, the limit stays what it was
+        setrlimit(RLIMIT_NOFILE, &limit); // if that fails, the limit stays unchanged
     }
     return descriptor_limit();
 }

@@ -23,17 +23,17 @@ private:
     int number_ = -1;
 };
 
-/// Raises the number of descriptors that this process may have to what it is allowed to raise it to. Returns that.
+/// Raises this process' limit of descriptors to its hard limit. Returns the limit that is now in effect.
 std::size_t raise_descriptor_limit();
 
-/// How many descriptors this process may have now.
+/// The limit of descriptors of this process.
 std::size_t descriptor_limit();
 
-/// How many are open.
+/// The number of open descriptors.
 std::size_t open_descriptors();
 
-/// Connections that leave the server enough descriptors for files, metrics and the device: at most `wanted`, at least
-/// one. `limit` and `open`: descriptors of this process, before there is a connection.
+/// Number of connections that leaves the server enough descriptors for files, metrics and the device: at most `wanted`,
+/// at least one. `limit` and `open`: descriptors of this process before its first connection.
 std::size_t affordable_connections(std::size_t wanted, std::size_t limit, std::size_t open);
 
 } // namespace fieldcast::listener

@@ -13,18 +13,18 @@ namespace fieldcast::listener {
 
 namespace {
 
-/// Options of the listening socket are those of the connections that it accepts.
+/// Sets an option, which accepted connections inherit from the listening socket.
 void set(int socket, int level, int option, int value) {
-    ::setsockopt(socket, level, option, &value, sizeof value); // each one is of use, none is needed
+    ::setsockopt(socket, level, option, &value, sizeof value); // errors are ignored: every option is optional
 }
 
-/// A socket that listens there, or none with errno set.
+/// A socket that listens at this address; on failure none, and errno is set.
 Descriptor listen_on(const SocketAddress& address, std::chrono::milliseconds silence) {
     Descriptor socket(::socket(address.family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     if (!socket.is_open()) {
         return socket;
     }
-    set(socket.number(), SOL_SOCKET, SO_REUSEADDR, 1); // a server that starts again; two at once stay refused
+    set(socket.number(), SOL_SOCKET, SO_REUSEADDR, 1); // for a quick restart; a second server at the port still fails
     set(socket.number(), IPPROTO_TCP, TCP_NODELAY, 1);
     set(socket.number(), IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(silence.count()));
     const bool listens =
@@ -37,7 +37,7 @@ Descriptor listen_on(const SocketAddress& address, std::chrono::milliseconds sil
 ListeningSockets::ListeningSockets(const HostPort& address, std::chrono::milliseconds silence) : port_(address.port) {
     int problem = EADDRNOTAVAIL;
     for (SocketAddress one : addresses_of(address)) {
-        one.set_port(port_); // all on the port that the first one got
+        one.set_port(port_); // all use the port of the first one
         Descriptor socket = listen_on(one, silence);
         if (socket.is_open()) {
             port_ = SocketAddress::local_end_of(socket.number()).port();

@@ -9,12 +9,12 @@
 
 namespace fieldcast::listener {
 
-/// One port on every address that a host name stands for. Callers who shake no hands are accepted by the kernel from
-/// the constructor on.
+/// Sockets that listen at one port of every address of a host name. The kernel completes connections from the
+/// constructor on.
 class ListeningSockets {
 public:
-    /// Port 0: any free one. What is written to a caller and not acknowledged for `silence` ends its connection. Throws
-    /// std::runtime_error if the address cannot be listened on.
+    /// Port 0: any free one. A connection ends if written data is not acknowledged for `silence`. Throws
+    /// std::runtime_error if listening on the address fails.
     ListeningSockets(const HostPort& address, std::chrono::milliseconds silence);
 
     int port() const { return port_; }

@@ -21,7 +21,7 @@ constexpr std::string_view kPreface = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"sv;
 constexpr std::string_view kEmptySettings = "\0\0\0\x04\0\0\0\0\0"sv;
 constexpr std::string_view kPing = "\0\0\x08\x06\0\0\0\0\0fc-alive"sv;
 constexpr std::string_view kPong = "\0\0\x08\x06\x01\0\0\0\0fc-alive"sv;
-constexpr std::size_t kMaxAnswerBytes = 16 << 10; // settings and window updates come first
+constexpr std::size_t kMaxAnswerBytes = 16 << 10; // settings and window updates precede the PING's answer
 
 [[noreturn]] void fail(const char* what) {
     throw std::system_error(errno, std::generic_category(), what);
@@ -48,7 +48,7 @@ public:
 
     void write(std::string_view bytes) override {
         if (::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(bytes.size())) {
-            give_up("the connection takes no bytes");
+            give_up("the connection accepts no data");
         }
     }
 
@@ -56,7 +56,7 @@ private:
     int socket_;
 };
 
-/// Where a socket that listens everywhere is found on this machine.
+/// Loopback address of a socket that listens on all addresses.
 SocketAddress reachable(SocketAddress address) {
     auto* const four = reinterpret_cast<sockaddr_in*>(&address.bytes);
     auto* const six = reinterpret_cast<sockaddr_in6*>(&address.bytes);
@@ -68,7 +68,7 @@ SocketAddress reachable(SocketAddress address) {
     return address;
 }
 
-/// False: the thread has to stop.
+/// False: the thread must stop.
 bool connect_to(const SocketAddress& target, int socket, const Patience& patience) {
     if (::connect(socket, target.get(), target.size) == 0) {
         return true;
@@ -97,7 +97,7 @@ void exchange_ping(Talk& talk, const Patience& patience) {
     std::array<char, 1024> piece{};
     while (answer.find(kPong) == std::string::npos) {
         if (answer.size() > kMaxAnswerBytes) {
-            throw NoAnswer("the answer is no answer to a PING");
+            throw NoAnswer("the answer is not a PING acknowledgement");
         }
         const std::size_t count = talk.read(piece.data(), piece.size());
         answer.append(piece.data(), count);
@@ -153,7 +153,7 @@ OwnPort::OwnPort(int listening, Speech speech)
     SocketAddress any = target_;
     any.set_port(0);
     if (!socket_.is_open() || ::bind(socket_.number(), any.get(), any.size) != 0) {
-        fail("a socket that asks the own port");
+        fail("creating the socket of the self-probe");
     }
     local_port_ = SocketAddress::local_end_of(socket_.number()).port();
 }

@@ -10,25 +10,25 @@
 
 namespace fieldcast::listener {
 
-/// What the port speaks.
+/// Protocol of the port.
 enum class Speech : std::uint8_t {
     kPlain,
     kTls,
-    kTlsForKnownClients, ///< asks for certificates that the server itself does not have
+    kTlsForKnownClients, ///< requires client certificates, which the server itself does not have
 };
 
-/// Asks the own port as a caller would: a connection, HTTP/2's preface, a PING, and its answer. Where the port wants a
-/// client's certificate, an answer to the handshake has to do. The socket is opened once and kept, so that asking takes
-/// no descriptor from the asking side. One thread at a time.
+/// Probes the server's own port as a client does: it connects, sends HTTP/2's preface and a PING, and waits for the
+/// answer. If the port requires a client certificate, any answer to the TLS handshake is enough. The socket is opened
+/// once and reused, so a probe needs no new descriptor on this side. One thread at a time.
 class OwnPort {
 public:
-    /// `listening`: one of the sockets that are asked. Throws std::system_error.
+    /// `listening`: one of the sockets of the port. Throws std::system_error.
     OwnPort(int listening, Speech speech);
 
-    /// From which the questions come.
+    /// Local port from which the probes come.
     int local_port() const { return local_port_; }
 
-    /// Why it does not answer within `patience`, or nothing if it does. A stop counts as an answer.
+    /// Why there is no answer within `patience`, or nothing if there is one. A stop request counts as an answer.
     std::optional<std::string> problem(const Wakeup& wakeup, std::chrono::milliseconds patience);
 
 private:

@@ -8,21 +8,21 @@
 
 namespace fieldcast::listener {
 
-/// What is known of the own port.
+/// State of the server's own port.
 enum class Hearing : std::uint8_t {
     kHears,
-    kSilent, ///< the last question had no answer
-    kDeaf,   ///< several in a row had none: for good, as far as one can tell
+    kSilent, ///< the last probe had no answer
+    kDeaf,   ///< several probes in a row had no answer; treated as permanent
 };
 
-/// How often the own port is asked, and what counts as deaf.
+/// Times of the probes, and the condition for kDeaf.
 struct ProbePace {
-    std::chrono::milliseconds interval; ///< from an answer to the next question
-    std::chrono::milliseconds patience; ///< for an answer
-    int failures_until_deaf;            ///< in a row
+    std::chrono::milliseconds interval; ///< from an answer to the next probe
+    std::chrono::milliseconds patience; ///< longest time for an answer
+    int failures_until_deaf;            ///< failed probes in a row
 };
 
-/// Asks the own port again and again, in a thread of its own.
+/// Probes the server's own port repeatedly, in a thread of its own.
 class SelfProbe {
 public:
     SelfProbe(OwnPort port, const ProbePace& pace);
@@ -42,7 +42,7 @@ private:
     void ask_until(const std::stop_token& stop);
     void take_note(const std::optional<std::string>& problem);
 
-    OwnPort port_; ///< of the thread alone
+    OwnPort port_; ///< used by the thread only
     const ProbePace pace_;
     mutable Guarded<State> state_;
     const Wakeup wakeup_;

@@ -20,7 +20,7 @@ template <class Ask> SocketAddress asked(Ask ask, int socket) {
     return address;
 }
 
-/// [::1] without its brackets.
+/// The host without brackets: "[::1]" becomes "::1".
 std::string without_brackets(const std::string& host) {
     return host.size() > 2 && host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }

@@ -8,7 +8,7 @@
 
 namespace fieldcast::listener {
 
-/// An address as the kernel takes it.
+/// An address in the kernel's format.
 struct SocketAddress {
     sockaddr_storage bytes{};
     socklen_t size = 0;
@@ -19,11 +19,11 @@ struct SocketAddress {
     void set_port(int port);
     bool has_host_of(const SocketAddress& other) const; ///< the ports may differ
 
-    static SocketAddress local_end_of(int socket); ///< size 0: it has none
-    static SocketAddress far_end_of(int socket);   ///< size 0: it has none
+    static SocketAddress local_end_of(int socket); ///< size 0: unknown
+    static SocketAddress far_end_of(int socket);   ///< size 0: unknown
 };
 
-/// Of a name or a number, for listening; empty if there is none.
+/// All addresses of a host name or numeric address, for listening; empty if there is none.
 std::vector<SocketAddress> addresses_of(const HostPort& address);
 
 } // namespace fieldcast::listener

@@ -8,7 +8,7 @@
 
 namespace fieldcast::listener {
 
-/// Why the other side did not answer.
+/// Thrown if the other side does not answer; contains the reason.
 class NoAnswer : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -20,7 +20,7 @@ public:
     Patience(const Wakeup& wakeup, int socket, std::chrono::milliseconds duration)
         : wakeup_(wakeup), socket_(socket), deadline_(std::chrono::steady_clock::now() + duration) {}
 
-    /// Until `events` of poll(2). Throws NoAnswer at the deadline. False: the thread has to stop.
+    /// Waits for `events` of poll(2). Throws NoAnswer at the deadline. False: the thread must stop.
     bool wait(short events) const;
 
 private:
@@ -29,15 +29,15 @@ private:
     std::chrono::steady_clock::time_point deadline_;
 };
 
-/// Bytes to and from the other side of a connected socket that does not block.
+/// Sends and receives bytes over a connected non-blocking socket.
 class Talk {
 public:
     virtual ~Talk() = default;
 
-    /// At most `size` bytes; 0: nothing yet. Throws NoAnswer if the other side has ended.
+    /// Receives at most `size` bytes; 0: nothing yet. Throws NoAnswer if the other side has closed the connection.
     virtual std::size_t read(char* into, std::size_t size) = 0;
 
-    /// Few enough for the socket's buffer. Throws NoAnswer if they do not go.
+    /// Sends bytes that fit the socket's buffer. Throws NoAnswer if they cannot be sent.
     virtual void write(std::string_view bytes) = 0;
 };
 

@@ -66,7 +66,7 @@ void TlsTalk::write(std::string_view bytes) {
     ERR_clear_error();
     if (SSL_write(session_->ssl.get(), bytes.data(), static_cast<int>(bytes.size())) !=
         static_cast<int>(bytes.size())) {
-        throw NoAnswer("the connection takes no bytes");
+        throw NoAnswer("the connection accepts no data");
     }
 }
 

@@ -7,15 +7,15 @@
 
 namespace fieldcast::listener {
 
-/// TLS with the own port: nothing is verified, since who answers is known.
+/// TLS with the server's own port. It verifies no certificate, because the peer is this process.
 class TlsTalk final : public Talk {
 public:
     explicit TlsTalk(int socket);
     ~TlsTalk() override;
 
-    /// Throws NoAnswer. False: the thread has to stop.
+    /// Performs the handshake. Throws NoAnswer. False: the thread must stop.
     bool shake_hands(const Patience& patience);
-    /// Whether the other side has said anything.
+    /// Whether the other side has sent anything.
     bool has_heard() const;
 
     std::size_t read(char* into, std::size_t size) override;

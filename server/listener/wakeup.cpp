@@ -25,7 +25,7 @@ Wakeup::Wakeup() : event_(new_event()) {}
 
 void Wakeup::stop() const {
     const std::uint64_t one = 1;
-    [[maybe_unused]] const ssize_t written = ::write(event_.number(), &one, sizeof one); // full: it was called before
+    [[maybe_unused]] const ssize_t written = ::write(event_.number(), &one, sizeof one); // full: already stopped
 }
 
 Wakeup::Outcome Wakeup::wait(std::span<pollfd> entries, std::chrono::milliseconds patience) const {
@@ -36,9 +36,9 @@ Wakeup::Outcome Wakeup::wait(std::span<pollfd> entries, std::chrono::millisecond
         entries[i].revents = all[i].revents;
     }
     if (count > 0 && all.back().revents != 0) {
-        return Outcome::kStopped; // nobody reads the event, so it stays
+        return Outcome::kStopped; // the event is never read, so it stays set
     }
-    return count == 0 ? Outcome::kLate : Outcome::kReady; // interrupted: ready, with no entry that is
+    return count == 0 ? Outcome::kLate : Outcome::kReady; // interrupted: kReady without a ready entry
 }
 
 } // namespace fieldcast::listener

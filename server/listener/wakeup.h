@@ -10,7 +10,8 @@
 
 namespace fieldcast::listener {
 
-/// Lets a thread wait for descriptors and for its stop at the same time. Made before the thread: it takes a descriptor.
+/// Waits for descriptors and for a stop request at the same time. Construct it before the thread: it needs a
+/// descriptor.
 class Wakeup {
 public:
     /// Throws std::system_error.
@@ -18,10 +19,10 @@ public:
 
     enum class Outcome : std::uint8_t { kReady, kLate, kStopped };
 
-    /// Until one of `entries` is ready, `patience` has passed (negative: never), or somebody has called stop().
+    /// Waits until one of `entries` is ready, `patience` has passed (negative: no limit), or stop() was called.
     Outcome wait(std::span<pollfd> entries, std::chrono::milliseconds patience) const;
 
-    /// Ends every wait from now on. From any thread.
+    /// Ends the current and all later waits. Thread-safe.
     void stop() const;
 
 private:

@@ -8,7 +8,7 @@
 
 namespace fieldcast::metrics {
 
-/// Only grows. Thread-safe, never waits.
+/// A value that only grows. Thread-safe; never blocks.
 class Counter {
 public:
     void add(std::uint64_t count = 1) { value_.fetch_add(count, std::memory_order_relaxed); }
@@ -18,17 +18,17 @@ private:
     std::atomic<std::uint64_t> value_ = 0;
 };
 
-/// How often values fell below each of some bounds. Thread-safe, never waits; a reader may see a value counted and not
-/// yet summed up.
+/// Counts values per interval between bounds. Thread-safe; never blocks. A reader may see a value in a count that the
+/// sum does not contain yet.
 class Histogram {
 public:
-    /// `bounds` ascend; above the last one there is no bound.
+    /// `bounds` ascend; a last interval without an upper bound is added.
     explicit Histogram(std::span<const double> bounds);
 
     void observe(double value);
 
     const std::vector<double>& bounds() const { return bounds_; }
-    /// Values at most bounds()[i], and after these all values: one more than there are bounds.
+    /// Cumulative counts: values up to bounds()[i], then all values. One more than there are bounds.
     std::vector<std::uint64_t> cumulative_counts() const;
     double sum() const { return sum_.load(std::memory_order_relaxed); }
 
@@ -38,7 +38,7 @@ private:
     std::atomic<double> sum_ = 0.0;
 };
 
-/// From 0.1 ms to 10 s, about three per decade.
+/// Bounds for durations in seconds: 0.1 ms to 10 s, about three per decade.
 std::span<const double> second_bounds();
 
 } // namespace fieldcast::metrics

@@ -10,18 +10,18 @@
 
 namespace fieldcast::metrics {
 
-/// Names and values, in the order in which they are written.
+/// Names and values of labels, in the order of output.
 using Labels = std::vector<std::pair<std::string, std::string>>;
 
-/// What a number means.
+/// Name and help text of a metric.
 struct Description {
-    std::string name; ///< Prometheus' rules: unit at the end, counters end in _total
+    std::string name; ///< follows Prometheus' rules: unit at the end, counters end in _total
     std::string help;
 };
 
-/// Numbers at one moment, in the text format that Prometheus scrapes, version 0.0.4
-/// (https://prometheus.io/docs/instrumenting/exposition_formats). Series of one name stand together, sorted by name,
-/// whatever the order in which they were added.
+/// Values at one moment in Prometheus' text format, version 0.0.4
+/// (https://prometheus.io/docs/instrumenting/exposition_formats). Metrics are sorted by name, independent of the order
+/// in which they were added; all series of a metric are adjacent.
 class Page {
 public:
     void add_counter(const Description& what, const Labels& labels, double value);
@@ -34,7 +34,7 @@ private:
     struct Family {
         std::string help;
         std::string type;
-        std::string samples; ///< lines
+        std::string samples; ///< lines of text
     };
     Family& family(const Description& what, const char* type);
 

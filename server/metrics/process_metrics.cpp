@@ -14,7 +14,7 @@ namespace fieldcast::metrics {
 
 namespace {
 
-/// Fields of /proc/self/stat from the third on: the second one, the program's name, may contain anything.
+/// Fields of /proc/self/stat from the third on; the second one, the program's name, may contain any character.
 std::vector<double> stat_fields() {
     std::ifstream file("/proc/self/stat");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -49,12 +49,12 @@ void add_files(Page& page) {
     std::error_code error;
     const std::filesystem::directory_iterator files("/proc/self/fd", error);
     if (!error) {
-        const auto count = std::distance(begin(files), end(files)) - 1; // one is this listing's own
+        const auto count = std::distance(begin(files), end(files)) - 1; // one of them belongs to this listing
         page.add_gauge({"process_open_fds", "Open file descriptors."}, {}, static_cast<double>(count));
     }
     rlimit limit{};
     if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
-        page.add_gauge({"process_max_fds", "File descriptors that may be open."}, {},
+        page.add_gauge({"process_max_fds", "Limit of open file descriptors."}, {},
                        static_cast<double>(limit.rlim_cur));
     }
 }
@@ -76,13 +76,14 @@ void add_process_metrics(Page& page) {
     }
     const auto ticks_per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
     const auto page_bytes = static_cast<double>(sysconf(_SC_PAGESIZE));
-    page.add_counter({"process_cpu_seconds_total", "Processor time spent, user and system."}, {},
+    page.add_counter({"process_cpu_seconds_total", "Processor time used, user and system, in seconds."}, {},
                      (fields[kUserTime] + fields[kSystemTime]) / ticks_per_second);
-    page.add_gauge({"process_threads", "Threads."}, {}, fields[kThreads]);
-    page.add_gauge({"process_start_time_seconds", "When the process started, since 1970."}, {},
+    page.add_gauge({"process_threads", "Number of threads."}, {}, fields[kThreads]);
+    page.add_gauge({"process_start_time_seconds", "Start of the process, in seconds since 1970."}, {},
                    boot_time_s() + fields[kStartTime] / ticks_per_second);
-    page.add_gauge({"process_virtual_memory_bytes", "Address space in use."}, {}, fields[kVirtualBytes]);
-    page.add_gauge({"process_resident_memory_bytes", "Memory in use."}, {}, fields[kResidentPages] * page_bytes);
+    page.add_gauge({"process_virtual_memory_bytes", "Virtual memory size in bytes."}, {}, fields[kVirtualBytes]);
+    page.add_gauge({"process_resident_memory_bytes", "Resident memory size in bytes."}, {},
+                   fields[kResidentPages] * page_bytes);
 }
 
 } // namespace fieldcast::metrics

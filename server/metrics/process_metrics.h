@@ -5,7 +5,7 @@
 
 namespace fieldcast::metrics {
 
-/// Memory, processor time, threads and open files of this process, under the names that Prometheus' own clients use.
+/// Adds memory, processor time, threads and open files of this process under the names of Prometheus' client libraries.
 void add_process_metrics(Page& page);
 
 } // namespace fieldcast::metrics

@@ -8,7 +8,7 @@ namespace fieldcast::metrics {
 
 namespace {
 
-/// The instrument of that name and those labels, made with `arguments` if it is new.
+/// The instrument with this name and these labels, created with `arguments` if it is new.
 template <class Map, class... Arguments>
 auto& find_or_make(Map& map, const Description& what, const Labels& labels, const Arguments&... arguments) {
     const auto [place, is_new] = map.try_emplace({what.name, labels});

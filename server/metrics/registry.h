@@ -12,7 +12,7 @@ namespace fieldcast::metrics {
 
 class Registry;
 
-/// Keeps a function on a registry's list while it lives.
+/// Registers a collecting function with a registry for its own lifetime.
 class Collector {
 public:
     Collector() = default;
@@ -20,7 +20,7 @@ public:
     Collector& operator=(Collector&& other) noexcept;
     ~Collector() { end(); }
 
-    /// When it returns, the function is not running and will not be called again.
+    /// After it returns, the function is not running and is not called again.
     void end();
 
 private:
@@ -31,16 +31,17 @@ private:
     std::uint64_t id_ = 0;
 };
 
-/// All numbers of one server. Thread-safe. Instruments are made once and stay; keep the references.
+/// All metrics of one server. Thread-safe. Instruments are never destroyed, so references to them may be kept.
 ///
-///     Counter& opened = registry.counter({"fieldcast_sessions_opened_total", "Sessions that were admitted."}, {});
+///     Counter& opened = registry.counter({"fieldcast_sessions_opened_total", "Admitted sessions."}, {});
 class Registry {
 public:
-    /// The same name and labels give the same instrument. Series without an event are written as 0.
+    /// Returns the instrument with this name and these labels; creates it on the first call. Its value starts at 0.
     Counter& counter(const Description& what, const Labels& labels);
     Histogram& histogram(const Description& what, const Labels& labels, std::span<const double> bounds);
 
-    /// `collect` adds what is only known when somebody looks. It may count, and must not add or end collectors.
+    /// `collect` adds values that are computed when the page is requested. It may change instruments, but must not add
+    /// or remove collectors.
     [[nodiscard]] Collector on_collect(std::function<void(Page&)> collect);
 
     Page page();
@@ -49,7 +50,7 @@ private:
     friend class Collector;
     template <class Instrument> struct Series {
         std::string help;
-        std::unique_ptr<Instrument> instrument; ///< at a fixed address
+        std::unique_ptr<Instrument> instrument; ///< its address never changes
     };
     using Key = std::pair<std::string, Labels>; ///< name and labels
     struct State {

@@ -55,7 +55,7 @@ Decoded<codec::Encoding> encoding_from_proto(const v1::RecordedEncoding& message
 Decoded<feed::Selection> selection_from_proto(const v1::RecordedPlanes& message) {
     feed::PlaneSelection selection;
     if (message.planes().empty() || message.planes_size() > kMaxPlanes) {
-        return decode_error("form: " + std::to_string(message.planes_size()) + " planes, 1 to 16 are right");
+        return decode_error("form: " + std::to_string(message.planes_size()) + " planes, 1 to 16 allowed");
     }
     for (const v1::RecordedPlane& plane : message.planes()) {
         const auto semantic = wire::from_proto(plane.semantic());
@@ -97,14 +97,14 @@ Decoded<feed::Selection> selection_from_proto(const v1::RecordedForm& message) {
     case v1::RecordedForm::FORM_NOT_SET:
         break;
     }
-    return decode_error("form: neither planes nor views");
+    return decode_error("form: it has neither planes nor views");
 }
 
 bool is_size(std::uint32_t px) {
     return px >= 1 && px <= kMaxPlaneSide;
 }
 
-/// What is wrong with numbers and names; null: nothing.
+/// Problem with a number or a name in `message`; null: none.
 const char* problem_of(const v1::RecordedChannel& message) {
     if (message.name().empty() || message.name().size() > feed::kMaxChannelNameBytes) {
         return "channel: its name must have 1 to 64 bytes";
@@ -113,21 +113,22 @@ const char* problem_of(const v1::RecordedChannel& message) {
         return "channel: scene_hash must have 32 bytes";
     }
     if (!is_size(message.source_width_px()) || !is_size(message.source_height_px())) {
-        return "channel: sides of the source are 1 to 16384 pixels";
+        return "channel: the source must have 1 to 16384 pixels per side";
     }
     if (message.source_count() < 1 || message.source_count() > kMaxSources) {
-        return "channel: 1 to 8 sources";
+        return "channel: it must have 1 to 8 sources";
     }
     if (!(message.fovy_rad() > 0.0F && message.fovy_rad() < std::numbers::pi_v<float>)) {
         return "channel: fovy_rad must lie between 0 and pi";
     }
     if (!is_frame_rate(message.frames_per_second())) {
-        return "channel: 0.1 to 240 frames per second";
+        return "channel: its rate must be 0.1 to 240 frames per second";
     }
     if (message.camera().size() > kMaxCameraBytes) {
-        return "channel: the camera's name has more than 256 bytes";
+        return "channel: the camera's name must have at most 256 bytes";
     }
-    return message.forms().empty() || message.forms_size() > kMaxForms ? "channel: 1 to 64 forms" : nullptr;
+    const bool has_forms = !message.forms().empty() && message.forms_size() <= kMaxForms;
+    return has_forms ? nullptr : "channel: it must have 1 to 64 forms";
 }
 
 feed::ChannelInfo plain_facts(const v1::RecordedChannel& message) {
@@ -172,7 +173,7 @@ Bytes to_bytes(const feed::ChannelInfo& info) {
 Decoded<feed::ChannelInfo> channel_from_bytes(std::span<const std::byte> bytes) {
     v1::RecordedChannel message;
     if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-        return decode_error("channel: these bytes are no fieldcast.v1.RecordedChannel");
+        return decode_error("channel: these bytes are not a fieldcast.v1.RecordedChannel");
     }
     if (const char* const problem = problem_of(message)) {
         return decode_error(problem);

@@ -7,10 +7,10 @@
 
 namespace fieldcast::recording {
 
-/// `info`, whose `recorded` says what is recorded, as the content of the first record. The bundle is left out.
+/// The content of a recording's first record: `info` with its recorded selections, without the scene bundle.
 Bytes to_bytes(const feed::ChannelInfo& info);
 
-/// Everything is checked; a replay of the result can serve clients.
+/// Decodes the result of `to_bytes`. All values are checked: a replay can serve clients from the result.
 Decoded<feed::ChannelInfo> channel_from_bytes(std::span<const std::byte> bytes);
 
 } // namespace fieldcast::recording

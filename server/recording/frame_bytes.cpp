@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kIdBytes = 8;
 constexpr std::size_t kLengthBytes = 4;
 
-/// Appends strips of planes, first to the message, then as pieces.
+/// Appends strips of planes: their sizes to a message, their bytes to the pieces of a record.
 class StripWriter {
 public:
     StripWriter(FrameRecord& record, bool has_key_frame) : record_(record), has_key_frame_(has_key_frame) {}
@@ -34,7 +34,7 @@ public:
 
 private:
     std::uint32_t append(const wire::StripBytes& strip) {
-        FC_ASSERT(strip.bytes != nullptr, "a strip was recorded that does not stand alone");
+        FC_ASSERT(strip.bytes != nullptr, "a recorded strip must have a form that stands alone");
         record_.pieces.push_back({.bytes = *strip.bytes, .crc32c = strip.crc32c});
         return static_cast<std::uint32_t>(strip.bytes->size());
     }
@@ -71,7 +71,7 @@ v1::RecordedFrame message_of(const feed::EncodedFrame& frame, const feed::Demand
     return message;
 }
 
-/// Takes strips out of a record's content, one after the other; sums up their CRC.
+/// Reads strips from a record's content, one after the other, and combines their CRCs.
 class StripReader {
 public:
     StripReader(std::span<const std::byte> bytes, std::uint32_t crc32c) : rest_(bytes), crc32c_(crc32c) {}
@@ -87,7 +87,8 @@ public:
             wire::EncodedStrip strip{.band = {entry.first_row(), entry.row_count()}};
             const std::uint64_t limit = codec::max_strip_bytes(plane.format, plane.width_px, entry.row_count());
             if (!take(entry.best_bytes(), limit, strip.best)) {
-                return decode_error("frame: a strip of " + std::to_string(entry.best_bytes()) + " bytes, at most " +
+                return decode_error("frame: a strip of " + std::to_string(entry.best_bytes()) +
+                                    " bytes; allowed are 1 to " +
                                     std::to_string(std::min<std::uint64_t>(limit, rest_.size())));
             }
             strip.alone = strip.best;
@@ -97,7 +98,7 @@ public:
             }
             plane.strips.push_back(std::move(strip));
         }
-        return next_row == plane.height_px ? Decoded<void>{} : decode_error("frame: rows are missing");
+        return next_row == plane.height_px ? Decoded<void>{} : decode_error("frame: a plane lacks rows");
     }
 
     bool is_at_end() const { return rest_.empty(); }
@@ -136,7 +137,8 @@ Decoded<void> read_source(const v1::RecordedFrame& message, const feed::Demand& 
                                  .width_px = entry.width_px(),
                                  .height_px = entry.height_px(),
                                  .strips = {}};
-        if (plane.width_px != plane_width(*header, choice.semantic) || plane.height_px != plane_height(*header, choice.semantic)) {
+        if (plane.width_px != plane_width(*header, choice.semantic) ||
+            plane.height_px != plane_height(*header, choice.semantic)) {
             return decode_error("frame: a plane does not have the size of its source");
         }
         if (const auto read = strips.read(entry, plane); !read) {
@@ -179,7 +181,7 @@ Decoded<void> read_parts(const v1::RecordedFrame& message, const feed::Demand& d
                          feed::EncodedFrame& frame) {
     if (static_cast<std::size_t>(message.planes_size()) != demand.planes.size() ||
         static_cast<std::size_t>(message.views_size()) != demand.views.size()) {
-        return decode_error("frame: not the forms that the recording announces");
+        return decode_error("frame: its forms differ from those of the recording");
     }
     if (!demand.planes.empty()) {
         if (const auto read = read_source(message, demand, strips, frame); !read) {
@@ -192,14 +194,14 @@ Decoded<void> read_parts(const v1::RecordedFrame& message, const feed::Demand& d
             return read;
         }
     }
-    return strips.is_at_end() ? Decoded<void>{} : decode_error("frame: more bytes than its strips have");
+    return strips.is_at_end() ? Decoded<void>{} : decode_error("frame: it has more bytes than its strips");
 }
 
 } // namespace
 
 FrameRecord to_record(const feed::EncodedFrame& frame, const FrameMark& mark, const feed::Demand& demand) {
     FrameRecord record;
-    record.pieces.emplace_back(); // the head, when it is known
+    record.pieces.emplace_back(); // filled with the head below
     StripWriter strips(record, mark.key_frame_id != 0);
     const v1::RecordedFrame message = message_of(frame, demand, strips);
     append_number(record.head, mark.frame_id, kIdBytes);
@@ -215,7 +217,8 @@ FrameRecord to_record(const feed::EncodedFrame& frame, const FrameMark& mark, co
 
 Decoded<FrameMark> mark_from_bytes(std::span<const std::byte> content) {
     if (content.size() < kFrameMarkBytes) {
-        return decode_error("frame: " + std::to_string(content.size()) + " bytes, too few");
+        return decode_error("frame: " + std::to_string(content.size()) + " bytes, at least " +
+                            std::to_string(kFrameMarkBytes) + " needed");
     }
     return FrameMark{.frame_id = number_at(content, kIdBytes),
                      .key_frame_id = number_at(content.subspan(kIdBytes), kIdBytes),
@@ -232,7 +235,7 @@ Decoded<feed::EncodedFrame> frame_from_content(const FrameContent& content, cons
     v1::RecordedFrame message;
     if (message_bytes > bytes.size() - kFrameMarkBytes ||
         !message.ParseFromArray(bytes.data() + kFrameMarkBytes, static_cast<int>(message_bytes))) {
-        return decode_error("frame: no fieldcast.v1.RecordedFrame stands in it");
+        return decode_error("frame: it contains no fieldcast.v1.RecordedFrame");
     }
     const auto header = wire::from_proto(message.header(), mark->frame_id);
     if (!header) {

@@ -75,16 +75,16 @@ void write_record(std::ostream& file, RecordKind kind, std::span<const Piece> pi
 Decoded<RecordHead> read_head(std::istream& file, std::uint64_t offset, std::uint64_t file_bytes) {
     std::array<std::byte, kRecordHeadBytes> bytes{};
     if (offset > file_bytes || file_bytes - offset < bytes.size() || !read_bytes(file, offset, bytes)) {
-        return decode_error(place(offset) + "the file ends in its head");
+        return decode_error(place(offset) + "the file ends within its head");
     }
     const std::span<const std::byte> head(bytes);
     const std::uint64_t kind = number_at(head, kKindBytes);
     const std::uint64_t content_bytes = number_at(head.subspan(kKindBytes), kLengthBytes);
     if (!is_known(kind)) {
-        return decode_error(place(offset) + "unknown kind " + std::to_string(kind));
+        return decode_error(place(offset) + "its kind is unknown: " + std::to_string(kind));
     }
     if (content_bytes > kMaxRecordBytes || content_bytes > file_bytes - offset - bytes.size()) {
-        return decode_error(place(offset) + std::to_string(content_bytes) + " bytes announced, the file has " +
+        return decode_error(place(offset) + std::to_string(content_bytes) + " bytes announced, but the file has only " +
                             std::to_string(file_bytes - offset - bytes.size()));
     }
     return RecordHead{.kind = static_cast<RecordKind>(kind),
@@ -97,7 +97,7 @@ Decoded<RecordHead> read_head(std::istream& file, std::uint64_t offset, std::uin
 Decoded<Bytes> read_content(std::istream& file, std::uint64_t offset, const RecordHead& head) {
     Bytes content(head.content_bytes);
     if (!content.empty() && !read_bytes(file, offset + kRecordHeadBytes, content)) {
-        return decode_error(place(offset) + "cannot be read");
+        return decode_error(place(offset) + "it cannot be read");
     }
     return content;
 }
@@ -108,7 +108,7 @@ Decoded<Bytes> read_record(std::istream& file, std::uint64_t offset, std::uint64
         return tl::unexpected(head.error());
     }
     if (head->kind != kind) {
-        return decode_error(place(offset) + "kind " + std::to_string(static_cast<std::uint32_t>(head->kind)) +
+        return decode_error(place(offset) + "its kind is " + std::to_string(static_cast<std::uint32_t>(head->kind)) +
                             " instead of " + std::to_string(static_cast<std::uint32_t>(kind)));
     }
     auto content = read_content(file, offset, *head);

@@ -22,7 +22,7 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
-/// The planes that clients of modes with their own copy of the scene may ask for, or the mode.
+/// Reads a plane set, which means mode SCENE, or a delivery mode. False: neither, or a mode that needs a plane set.
 bool read_content(const std::string& word, RecordedForm& form) {
     if (const auto set = from_word<PlaneSet>(word)) {
         form.mode = DeliveryMode::kScene;
@@ -31,7 +31,7 @@ bool read_content(const std::string& word, RecordedForm& form) {
     }
     const auto mode = from_word<DeliveryMode>(word);
     form.mode = mode.value_or(form.mode);
-    return mode && !row_of(*mode).planes.empty(); // else its planes have words of their own
+    return mode && !row_of(*mode).planes.empty(); // else a plane set names it
 }
 
 /// Codecs that carry at least one of the planes of `form`.
@@ -136,8 +136,8 @@ feed::Selection selection_of(const RecordedForm& form, const feed::ChannelInfo& 
     }
     if (size.x == 0 || size.y == 0 || size.x > source.x || size.y > source.y) {
         throw UserError(place + "views of " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                        " pixels; sides are at least 1 and at most the source's, " + std::to_string(source.x) + "x" +
-                        std::to_string(source.y));
+                        " pixels asked; 1x1 to " + std::to_string(source.x) + "x" + std::to_string(source.y) +
+                        " (the source's) allowed");
     }
     return feed::ViewSelection{.format = {.geometry = grid.geometry,
                                       .fovy_rad = channel.fovy_rad,

@@ -8,7 +8,7 @@
 
 namespace fieldcast::recording {
 
-/// What to record, as it was typed; the channel fills in what was left open.
+/// One form to record, as the user wrote it; the channel supplies the values that are unset.
 struct RecordedForm {
     DeliveryMode mode = DeliveryMode::kViews;
     PlaneSet set = PlaneSet::kIllumination; ///< of modes that need the scene
@@ -23,10 +23,10 @@ struct RecordedForm {
 /// Reads "views", "views:3x3:160x90:jpeg:50", "illumination:jpeg", "g-buffer", "warp". Empty if malformed.
 std::optional<RecordedForm> parse_form(const std::string& text);
 
-/// How to write one, for people: "views[:RxC[:WxH]][:CODEC[:QUALITY]] …".
+/// Syntax of a form, as text for people: "views[:RxC[:WxH]][:CODEC[:QUALITY]] …".
 std::string form_syntax();
 
-/// What `form` means on that channel. Throws UserError if the channel does not have it.
+/// The selection that `form` stands for on that channel. Throws UserError if the channel does not offer it.
 feed::Selection selection_of(const RecordedForm& form, const feed::ChannelInfo& channel);
 
 } // namespace fieldcast::recording

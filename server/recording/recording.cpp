@@ -20,11 +20,11 @@ Recording::Recording(const std::filesystem::path& file) : path_(file), file_(fil
     std::string magic(kMagic.size(), '\0');
     file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
     if (!file_ || !magic.starts_with(kMagic.substr(0, kMagic.size() - 1))) {
-        throw UserError(file.string() + ": is no recording");
+        throw UserError(file.string() + ": it is not a recording");
     }
     if (magic != kMagic) {
         throw UserError(file.string() + ": its format has version " + std::to_string(static_cast<int>(magic.back())) +
-                        ", this program knows version 1");
+                        ", but this program reads version 1");
     }
     read_channel();
     read_index_or_scan();
@@ -68,7 +68,7 @@ void Recording::read_index_or_scan() {
         index_.ignored = index_.ignored ? why + "; " + *index_.ignored : why;
     }
     if (index_.frames.empty()) {
-        throw UserError(path_.string() + ": has no complete frame" +
+        throw UserError(path_.string() + ": it has no complete frame" +
                         (index_.ignored ? " (" + *index_.ignored + ")" : std::string()));
     }
 }
@@ -80,7 +80,7 @@ Decoded<feed::EncodedFrame> Recording::read(std::size_t i) {
         return tl::unexpected(head.error());
     }
     if (head->kind != RecordKind::kFrame) {
-        return decode_error("record at byte " + std::to_string(entry.offset) + ": is no frame");
+        return decode_error("record at byte " + std::to_string(entry.offset) + ": it is not a frame");
     }
     auto bytes = read_content(file_, entry.offset, *head);
     if (!bytes) {
@@ -88,7 +88,7 @@ Decoded<feed::EncodedFrame> Recording::read(std::size_t i) {
     }
     auto frame = frame_from_content({.head = *head, .bytes = std::move(*bytes)}, demand_);
     if (frame && (frame->header.frame_id != entry.mark.frame_id || frame->key_frame_id != entry.mark.key_frame_id)) {
-        return decode_error("record at byte " + std::to_string(entry.offset) + ": not the frame of the index");
+        return decode_error("record at byte " + std::to_string(entry.offset) + ": its frame differs from the index");
     }
     return frame;
 }

@@ -15,19 +15,19 @@ namespace fieldcast::recording {
 ///     for (std::size_t i = 0; i < recording.frames().size(); ++i) { auto frame = recording.read(i); … }
 class Recording {
 public:
-    /// Throws UserError naming the place if the file is no recording, or has no complete frame. A file that was not
-    /// finished is read up to its last complete frame.
+    /// Throws UserError naming the place if the file is not a recording, or has no complete frame. An unfinished file
+    /// is read up to its last complete frame.
     explicit Recording(const std::filesystem::path& file);
 
-    /// The channel; `recorded` says what every frame has.
+    /// The recorded channel; every frame has all selections in `recorded`.
     const feed::ChannelInfo& info() const { return info_; }
 
     const std::vector<IndexEntry>& frames() const { return index_.frames; }
 
-    /// What was ignored at the end of a file that was not finished.
+    /// Description of the ignored end of an unfinished file; empty: the file was finished.
     const std::optional<std::string>& ignored() const { return index_.ignored; }
 
-    /// Frame `i` as it was recorded.
+    /// Frame `i` as it was recorded; fails if its record is damaged.
     Decoded<feed::EncodedFrame> read(std::size_t i);
 
 private:
@@ -39,7 +39,7 @@ private:
     std::uint64_t file_bytes_ = 0;
     std::uint64_t frames_begin_ = 0;
     feed::ChannelInfo info_;
-    feed::Demand demand_; ///< the union of what was recorded
+    feed::Demand demand_; ///< union of the recorded selections
     RecordingIndex index_;
 };
 

@@ -12,18 +12,18 @@ constexpr std::size_t kEntryBytes = 4 * kNumberBytes;
 const std::uint64_t kEndBytes = kNumberBytes + kEndMagic.size();
 
 constexpr std::uint64_t kMaxFrameId = 1ULL << 48;
-constexpr std::int64_t kMaxTime_ns = 10'000'000'000'000'000; ///< 115 days; sums of a few stay far below 2^63
+constexpr std::int64_t kMaxTime_ns = 10'000'000'000'000'000; ///< 115 days: sums of a few stay far below 2^63
 
-/// Checks frames in their order.
+/// Checks that the frames of a file are in order.
 class OrderCheck {
 public:
-    /// Why `mark` cannot follow; null: it can.
+    /// Why `mark` cannot follow the marks before; null: it can.
     const char* problem_of(const FrameMark& mark) {
         if (mark.frame_id == 0 || mark.frame_id > kMaxFrameId || mark.at_ns < 0 || mark.at_ns > kMaxTime_ns) {
-            return "frame ids are 1 to 2^48, times 0 to 1e16 ns";
+            return "frame ids must be 1 to 2^48, and times 0 to 1e16 ns";
         }
         if (mark.frame_id <= last_id_ || mark.at_ns < last_at_ns_) {
-            return "frame ids and times must grow";
+            return "frame ids must increase, and times must not decrease";
         }
         if (!mark.is_key() && mark.key_frame_id != 0 && mark.key_frame_id != last_key_id_) {
             return "a frame refers to a key frame that is not the last one before it";
@@ -47,7 +47,7 @@ IndexEntry entry_from_bytes(std::span<const std::byte> bytes) {
             .offset = number_at(bytes.subspan(3 * kNumberBytes), kNumberBytes)};
 }
 
-/// Where the index record stands, as the end of a finished file says.
+/// Offset of the index record, read from the end of the file; empty: the file was not finished.
 std::optional<std::uint64_t> index_offset(std::istream& file, std::uint64_t file_bytes) {
     if (file_bytes < kEndBytes) {
         return std::nullopt;
@@ -83,14 +83,15 @@ void write_index(std::ostream& file, std::uint64_t offset, std::span<const Index
 Decoded<RecordingIndex> read_index(std::istream& file, std::uint64_t frames_begin, std::uint64_t file_bytes) {
     const auto offset = index_offset(file, file_bytes);
     if (!offset) {
-        return decode_error("it has no index at its end");
+        return decode_error("the file has no index at its end");
     }
     const auto bytes = read_record(file, *offset, file_bytes - kEndBytes, RecordKind::kIndex);
     if (!bytes) {
         return tl::unexpected(bytes.error());
     }
     if (bytes->size() % kEntryBytes != 0) {
-        return decode_error("index: " + std::to_string(bytes->size()) + " bytes");
+        return decode_error("index: " + std::to_string(bytes->size()) + " bytes are not a multiple of " +
+                            std::to_string(kEntryBytes));
     }
     RecordingIndex index;
     OrderCheck order;
@@ -99,7 +100,8 @@ Decoded<RecordingIndex> read_index(std::istream& file, std::uint64_t frames_begi
         const IndexEntry entry = entry_from_bytes(std::span(*bytes).subspan(i));
         const char* const problem = order.problem_of(entry.mark);
         if (problem != nullptr || entry.offset < least_offset || entry.offset >= *offset) {
-            return decode_error(std::string("index: ") + (problem != nullptr ? problem : "a frame is not in the file"));
+            return decode_error(std::string("index: ") +
+                                (problem != nullptr ? problem : "a frame lies outside of the file"));
         }
         least_offset = entry.offset + kRecordHeadBytes;
         index.frames.push_back(entry);

@@ -7,7 +7,7 @@
 
 namespace fieldcast::recording {
 
-/// Where a frame stands in its file.
+/// Position of a frame in its file.
 struct IndexEntry {
     FrameMark mark;
     std::uint64_t offset = 0; ///< of its record
@@ -16,16 +16,16 @@ struct IndexEntry {
 /// All frames of a file, in order.
 struct RecordingIndex {
     std::vector<IndexEntry> frames{};
-    std::optional<std::string> ignored{}; ///< what stands at the end and is not complete; nothing if all is well
+    std::optional<std::string> ignored{}; ///< description of the incomplete end of the file; empty: it is complete
 };
 
-/// The index record and what ends a file behind it.
+/// Writes the index record at `offset`, the current end of `file`, and the end mark behind it.
 void write_index(std::ostream& file, std::uint64_t offset, std::span<const IndexEntry> frames);
 
-/// The index at the end of a file, if it was finished; checked against a file whose frames begin at `frames_begin`.
+/// The index at the end of a finished file. Checks that all frames lie between `frames_begin` and the index.
 Decoded<RecordingIndex> read_index(std::istream& file, std::uint64_t frames_begin, std::uint64_t file_bytes);
 
-/// The same, found by looking at every record: for files that were not finished.
+/// The index of an unfinished file, made by reading every record.
 RecordingIndex scan_frames(std::istream& file, std::uint64_t frames_begin, std::uint64_t file_bytes);
 
 } // namespace fieldcast::recording

@@ -11,7 +11,7 @@ namespace fieldcast::recording {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const feed::ChannelInfo& info)
     : path_(file), file_(file, std::ios::binary | std::ios::trunc), recorded_(info.recorded) {
-    FC_ASSERT(!recorded_.empty(), "a recording of nothing");
+    FC_ASSERT(!recorded_.empty(), "a recording must have at least one selection");
     for (const feed::Selection& selection : recorded_) {
         feed::add(demand_, selection);
     }
@@ -51,7 +51,7 @@ bool RecordingWriter::add(const feed::EncodedFrame& frame, std::chrono::nanoseco
     if (mark.is_key()) {
         last_key_id_ = mark.frame_id;
     } else if (mark.key_frame_id != last_key_id_) {
-        mark.key_frame_id = 0; // that one is not in the file: strips that stand alone have to do
+        mark.key_frame_id = 0; // that key frame is not in the file: keep only strips that stand alone
     }
     begin_ = frames_.empty() ? at : begin_;
     mark.at_ns = frames_.empty() ? 0 : std::max((at - begin_).count(), frames_.back().mark.at_ns);
@@ -73,11 +73,11 @@ void RecordingWriter::finish() {
     file_.close();
 }
 
-// After each record, so that whoever kills the process loses no whole frame.
+// Called after each record, so that no complete frame is lost if the process is killed.
 void RecordingWriter::flush(const char* what) {
     file_.flush();
     if (!file_) {
-        is_finished_ = true; // what follows half a record could not be read
+        is_finished_ = true; // nothing behind an incomplete record could be read
         throw std::runtime_error(path_.string() + ": " + what + " could not be written; is the disk full?");
     }
     file_bytes_ = static_cast<std::uint64_t>(file_.tellp());

@@ -10,20 +10,20 @@
 
 namespace fieldcast::recording {
 
-/// Writes frames of a channel to a file, each whole or not at all: a file whose writer is killed can be read up to its
-/// last frame. Not thread-safe.
+/// Writes frames of a channel to a file, one record each: if the process is killed, the file can be read up to its
+/// last complete frame. Not thread-safe.
 class RecordingWriter {
 public:
-    /// Replaces the file. `info.recorded` says what to record; the bundle is written if planes are among it. Throws
-    /// UserError if the file cannot be written.
+    /// Replaces the file. `info.recorded` lists the selections to record; the scene bundle is written if one of them
+    /// has planes. Throws UserError if the file cannot be written.
     RecordingWriter(const std::filesystem::path& file, const feed::ChannelInfo& info);
-    ~RecordingWriter(); ///< finishes; problems are logged
+    ~RecordingWriter(); ///< calls `finish`; problems are logged
 
-    /// Writes `frame`, shown at `at` (any origin), unless it lacks something that is recorded: false. If its key frame
-    /// is not in the file, its strips refer to nothing. Throws std::runtime_error if the disk refuses.
+    /// Writes `frame`, shown at `at` (any origin). False: it lacks a recorded selection and was left out. If its key
+    /// frame is not in the file, only strips that stand alone are written. Throws std::runtime_error if writing fails.
     bool add(const feed::EncodedFrame& frame, std::chrono::nanoseconds at);
 
-    /// Writes the index; nothing can be added any more. Throws std::runtime_error if the disk refuses.
+    /// Writes the index; no frame can be added afterwards. Throws std::runtime_error if writing fails.
     void finish();
 
     std::size_t frame_count() const { return frames_.size(); }
@@ -36,10 +36,10 @@ private:
     std::filesystem::path path_;
     std::ofstream file_;
     std::vector<feed::Selection> recorded_;
-    feed::Demand demand_; ///< the union of what is recorded
+    feed::Demand demand_; ///< union of the recorded selections
     std::vector<IndexEntry> frames_;
     std::chrono::nanoseconds begin_{0};
-    std::uint64_t last_key_id_ = 0; ///< that is in the file; 0: none yet
+    std::uint64_t last_key_id_ = 0; ///< last key frame in the file; 0: none yet
     std::uint64_t file_bytes_ = 0;
     bool is_finished_ = false;
 };

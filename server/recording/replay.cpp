@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::nanoseconds;
 
-constexpr std::chrono::milliseconds kLongestDelay{500}; ///< after which a replay goes on from now
+constexpr std::chrono::milliseconds kLongestDelay{500}; ///< a replay that is later restarts its clock
 
 feed::ChannelInfo info_of(const Recording& recording, const ReplaySetup& setup) {
     feed::ChannelInfo info = recording.info();
@@ -25,7 +25,7 @@ feed::ChannelInfo info_of(const Recording& recording, const ReplaySetup& setup) 
     return info;
 }
 
-/// From the first frame to where it comes again; the last one stays for as long as frames do on average.
+/// Time from the first frame to its repetition; the last frame is shown for the average frame interval.
 nanoseconds loop_length(const Recording& recording) {
     const auto& frames = recording.frames();
     const nanoseconds shown(frames.back().mark.at_ns);
@@ -43,7 +43,7 @@ bool wait_until(Clock::time_point time, const std::stop_token& stop) {
     return !stop.stop_requested();
 }
 
-/// Nothing is rendered and encoded any more: for clients that measure, the frame begins now.
+/// Times of a replayed frame: nothing is rendered or encoded, so for clients that measure all of it happens now.
 wire::ServerTimes times_now() {
     const std::int64_t now_ns = nanoseconds(Clock::now().time_since_epoch()).count();
     return {.pose_sampled_ns = now_ns, .render_begin_ns = now_ns, .render_end_ns = now_ns, .encode_end_ns = now_ns};
@@ -84,10 +84,10 @@ Replay::Replay(const ReplaySetup& setup, metrics::Registry& registry)
 
 void Replay::publish_frames(const std::stop_token& stop) {
     Place place;
-    Clock::time_point begin{};    // of the first loop; later if somebody slept
-    Clock::time_point earliest{}; // for the next frame: also while a replay catches up
+    Clock::time_point begin{};    // of the first loop; moved forward after a delay
+    Clock::time_point earliest{}; // for the next frame, also while the replay catches up
     while (feed_->wait_for_subscribers(stop)) {
-        const std::shared_ptr<feed::EncodedFrame> frame = frame_at(place); // read before its time
+        const std::shared_ptr<feed::EncodedFrame> frame = frame_at(place); // read ahead of its time
         const auto now = Clock::now();
         if (now > begin + time_of(place) + kLongestDelay) {
             begin = now - std::chrono::duration_cast<Clock::duration>(time_of(place));
@@ -133,7 +133,7 @@ std::shared_ptr<feed::EncodedFrame> Replay::frame_at(Place place) {
     return frame;
 }
 
-// Ids of a loop are those of the recording, moved so that they begin where the loop before ended.
+// Ids of a loop are the recorded ones plus an offset, so that they continue those of the loop before.
 std::uint64_t Replay::id_of(std::uint64_t loop, std::uint64_t recorded_id) const {
     const std::uint64_t first = recording_.frames().front().mark.frame_id;
     const std::uint64_t span = recording_.frames().back().mark.frame_id - first + 1;

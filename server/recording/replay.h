@@ -10,28 +10,28 @@
 
 namespace fieldcast::recording {
 
-/// What to show again, and how.
+/// Recording to replay, and its settings.
 struct ReplaySetup {
     std::filesystem::path file;
     std::string name;                       ///< of the channel; empty: as it was recorded
     std::optional<float> frames_per_second; ///< unset: as it was recorded
 };
 
-/// A recording as a channel: publishes its frames in a loop while somebody watches, never closer together than
-/// kMaxFramesPerSecond allows, whatever their times. Frame ids go on growing; the first frame of a loop is a cut.
-/// Needs no device.
+/// A recording as a channel: publishes its frames in a loop while there are subscribers, never faster than
+/// kMaxFramesPerSecond, whatever their recorded times. Frame ids increase from loop to loop; the first frame of a loop
+/// is a cut. Needs no device.
 class Replay {
 public:
-    /// `registry` must outlive it. Throws UserError if the file is no recording.
+    /// `registry` must outlive it. Throws UserError if the file is not a recording.
     Replay(const ReplaySetup& setup, metrics::Registry& registry);
 
     const std::shared_ptr<feed::Feed>& feed() const { return feed_; }
     std::size_t frame_count() const { return recording_.frames().size(); } ///< of one loop
 
 private:
-    /// A frame of some loop.
+    /// Position of a frame in the endless sequence of loops.
     struct Place {
-        std::uint64_t loop = 0;
+        std::uint64_t loop = 0; ///< 0 first
         std::size_t frame = 0; ///< of the recording
     };
 

@@ -17,7 +17,7 @@ std::shared_ptr<CatalogCall> CatalogCall::open(grpc::CallbackServerContext& cont
 void CatalogCall::OnReadDone(bool ok) {
     {
         auto state = state_.lock();
-        if (state->is_over) { // it came too late
+        if (state->is_over) { // the request came too late
             return;
         }
         state->step = Step::kBetween;
@@ -57,7 +57,7 @@ void CatalogCall::OnWriteDone(bool ok) {
     if (ok) {
         return write_next();
     }
-    end(CallEnd::kCancelled, to_status(Problem::kUnavailable, "the stream broke"));
+    end(CallEnd::kCancelled, to_status(Problem::kUnavailable, "the stream was interrupted"));
     finish_unless_pinned();
 }
 
@@ -97,11 +97,11 @@ void CatalogCall::tick(Clock::time_point now) {
         state->end = is_revoked ? CallEnd::kRevoked : CallEnd::kStalled;
         state->verdict = is_revoked ? to_status(Problem::kUnauthenticated, "the token of this call was revoked")
                                     : to_status(Problem::kTooLate, what);
-        state->is_pinned = is_writing; // then it has not finished, and the context is there
-        state->is_over = !is_writing;  // a read under way does not keep it from finishing
+        state->is_pinned = is_writing; // with a write in flight the call has not finished, and the context exists
+        state->is_over = !is_writing;  // a read in flight does not prevent finishing
     }
     if (is_writing) {
-        context_.TryCancel(); // the write comes back with ok == false
+        context_.TryCancel(); // the write then returns with ok == false
         state_.lock()->is_pinned = false;
     }
     finish_unless_pinned();

@@ -77,7 +77,7 @@ Answer once(const google::protobuf::MessageLite& message) {
     };
 }
 
-/// A bundle from byte `offset` on, chunk by chunk; at its end, one without data.
+/// A bundle from byte `offset` on, in chunks; at its end, one chunk without data.
 Answer chunks_of(std::shared_ptr<const std::vector<std::byte>> bundle, std::uint64_t offset) {
     return [bundle = std::move(bundle), next = offset, is_over = false]() mutable -> std::optional<AnswerPart> {
         if (is_over) {
@@ -94,12 +94,12 @@ Answer chunks_of(std::shared_ptr<const std::vector<std::byte>> bundle, std::uint
     };
 }
 
-/// The request, or why it is none.
+/// The parsed request, or the status of a malformed one.
 template <class Request> tl::expected<Request, grpc::Status> parse(const grpc::ByteBuffer& bytes) {
     Request request;
     grpc::ByteBuffer shared(bytes); // Deserialize empties its argument
     if (!grpc::SerializationTraits<Request>::Deserialize(&shared, &request).ok()) {
-        return tl::unexpected(to_status(Problem::kInvalid, "the request is no " + request.GetTypeName()));
+        return tl::unexpected(to_status(Problem::kInvalid, "the request is not a " + request.GetTypeName()));
     }
     return request;
 }
@@ -153,7 +153,7 @@ RawReactor* CatalogService::begin(grpc::CallbackServerContext& context, MakeAnsw
 }
 
 RawReactor* CatalogService::begin_download(grpc::CallbackServerContext& context) {
-    const auto place = std::make_shared<std::optional<std::uint64_t>>(); // none: refused, or no request came
+    const auto place = std::make_shared<std::optional<std::uint64_t>>(); // empty: refused, or without a request
     const auto answer = [this, place, peer = peer_host(context.peer())](
                             const grpc::ByteBuffer& bytes) -> tl::expected<Answer, grpc::Status> {
         const auto request = parse<v1::FetchSceneRequest>(bytes);
@@ -187,11 +187,12 @@ tl::expected<Answer, grpc::Status> CatalogService::bundle_for(const v1::FetchSce
     };
     if (hash.size() != sizeof(feed::ChannelInfo::scene_hash)) {
         return tl::unexpected(
-            to_status(Problem::kInvalid, "scene_hash: " + std::to_string(hash.size()) + " bytes, a SHA-256 has 32"));
+            to_status(Problem::kInvalid,
+                      "scene_hash: " + std::to_string(hash.size()) + " bytes, but a SHA-256 has 32"));
     }
     const auto channel = std::ranges::find_if(channels_, shows_scene);
     if (channel == channels_.end()) {
-        return tl::unexpected(to_status(Problem::kNotFound, "scene_hash: no channel of this server shows that scene"));
+        return tl::unexpected(to_status(Problem::kNotFound, "scene_hash: no channel of this server has this scene"));
     }
     const auto& bundle = (*channel)->info().bundle;
     if (request.offset() > bundle->size()) {

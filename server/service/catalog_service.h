@@ -16,21 +16,21 @@
 
 namespace fieldcast::service {
 
-/// What this server has: v1::Catalog. Answers are made once, when it starts; scenes are sent within limits. Calls whose
-/// request does not come are cut.
+/// v1::Catalog: the server, its channels and its scenes. Answers are built once at the start; downloads of scenes are
+/// limited. Calls without a request are cancelled after a deadline.
 class CatalogService final : public grpc::Service {
 public:
     /// `gate` and `registry` must outlive it.
     CatalogService(const std::vector<std::shared_ptr<feed::Feed>>& channels, const session::Limits& limits,
                    const access::Gate& gate, metrics::Registry& registry);
 
-    /// Cuts calls that do not go on, or whose token has gone.
+    /// Cancels calls that exceed a deadline or whose token was revoked.
     void tick(std::chrono::steady_clock::time_point now);
 
 private:
     using MakeAnswer = std::function<tl::expected<Answer, grpc::Status>(const grpc::ByteBuffer& request)>;
 
-    /// `open` begins each call of that method.
+    /// Registers a method; `open` begins each of its calls.
     void add_method(int index, const char* name, std::function<RawReactor*(grpc::CallbackServerContext*)> open);
     RawReactor* begin(grpc::CallbackServerContext& context, MakeAnswer answer,
                       std::function<void(CallEnd, std::uint64_t)> on_done);

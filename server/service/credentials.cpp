@@ -20,7 +20,7 @@ std::string_view view_of(const grpc::string_ref& text) {
 
 using Headers = std::multimap<grpc::string_ref, grpc::string_ref>;
 
-/// A header's value; nothing if it is absent or repeated.
+/// The value of a header; nothing if the header is absent or repeated.
 std::optional<std::string_view> find(const Headers& headers, const char* name) {
     return headers.count(name) == 1 ? std::optional(view_of(headers.find(name)->second)) : std::nullopt;
 }
@@ -30,10 +30,10 @@ Problem problem_of(access::Denial::Kind kind) {
     return is_known ? Problem::kForbidden : Problem::kUnauthenticated;
 }
 
-/// Whether health is told to whoever asks: supervisors and proxies of the same machine hold no tokens.
+/// Whether health checks need a token. On loopback they do not: supervisors and proxies on the same machine have none.
 enum class HealthAccess : std::uint8_t { kWithToken, kOpen };
 
-/// Asks the gate about every call.
+/// Admits or denies every call through the gate.
 class TokenCheck final : public grpc::AuthMetadataProcessor {
 public:
     TokenCheck(const access::Gate& gate, ServiceMetrics& metrics, HealthAccess health)
@@ -84,7 +84,7 @@ std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security
     std::shared_ptr<grpc::ServerCredentials> credentials;
     if (security.certificates) {
         credentials = tls_credentials(*security.certificates);
-    } else if (security.tokens) { // plain text, but of a kind that gRPC lets check calls
+    } else if (security.tokens) { // plain text in gRPC's local credentials, which support checks of calls
         credentials = grpc::experimental::LocalServerCredentials(LOCAL_TCP);
     } else {
         return grpc::InsecureServerCredentials();

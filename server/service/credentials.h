@@ -10,12 +10,12 @@
 
 namespace fieldcast::service {
 
-/// TLS, or plain text that never leaves this machine. With tokens, every call of every service passes `gate` first;
-/// `gate` and `metrics` must outlive the server. Certificates are read again when their files change.
+/// TLS, or plain text on loopback only. With tokens, every call of every service passes `gate` first. `gate` and
+/// `metrics` must outlive the server. Certificates are read again when their files change.
 std::shared_ptr<grpc::ServerCredentials> make_credentials(const access::Security& security, const access::Gate& gate,
                                                           ServiceMetrics& metrics);
 
-/// Whose call it is. The call has passed the gate, but its token may have been revoked since.
+/// The caller's identity. The call has passed the gate before, but its token may have been revoked since.
 tl::expected<access::Identity, access::Denial> identify(const grpc::CallbackServerContext& context,
                                                         const access::Gate& gate);
 

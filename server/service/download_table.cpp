@@ -12,7 +12,8 @@ namespace {
 constexpr std::string_view kRefused = "refused";
 
 metrics::Counter& ended_counter(metrics::Registry& registry, std::string_view result) {
-    return registry.counter({"fieldcast_scene_downloads_total", "Scene downloads that ended, or were refused."},
+    return registry.counter({"fieldcast_scene_downloads_total",
+                            "Scene downloads that ended or were refused, by result."},
                             {{"result", std::string(result)}});
 }
 
@@ -20,10 +21,10 @@ metrics::Counter& ended_counter(metrics::Registry& registry, std::string_view re
 
 DownloadTable::DownloadTable(const session::Limits& limits, metrics::Registry& registry)
     : limits_(limits), registry_(registry),
-      bytes_(registry.counter({"fieldcast_scene_bytes_total", "Bytes of scenes that were sent."}, {})),
+      bytes_(registry.counter({"fieldcast_scene_bytes_total", "Sent bytes of scenes."}, {})),
       collector_(registry.on_collect([this](metrics::Page& page) {
           const auto count = static_cast<double>(state_.lock()->places.size());
-          page.add_gauge({"fieldcast_scene_downloads", "Scene downloads under way."}, {}, count);
+          page.add_gauge({"fieldcast_scene_downloads", "Running scene downloads."}, {}, count);
       })) {
     for (const std::string_view result : kCallEndNames) {
         ended_counter(registry_, result);
@@ -35,7 +36,7 @@ tl::expected<std::uint64_t, std::string> DownloadTable::admit(const std::string&
     const auto refuse = [&](std::uint32_t limit, const char* whose) {
         ended_counter(registry_, kRefused).add();
         return tl::unexpected("all " + std::to_string(limit) + " scene downloads that " + whose +
-                              " at a time are under way");
+                              " at the same time are in use");
     };
     auto state = state_.lock();
     if (state->places.size() >= limits_.max_scene_downloads) {
@@ -47,7 +48,7 @@ tl::expected<std::uint64_t, std::string> DownloadTable::admit(const std::string&
     }
     const auto kept = session::newcomers_reserve(limits_.max_scene_downloads, limits_.max_scene_downloads_per_peer);
     if (of_peer > 0 && state->places.size() + kept >= limits_.max_scene_downloads) {
-        return refuse(limits_.max_scene_downloads, "a server serves, but for those that are kept for newcomers,");
+        return refuse(limits_.max_scene_downloads, "this server serves (some of them reserved for new peers)");
     }
     const std::uint64_t id = state->next_id++;
     state->places.emplace(id, peer);

@@ -11,20 +11,20 @@
 
 namespace fieldcast::service {
 
-/// All scene downloads under way, the limits on their number, and what became of them. Thread-safe.
+/// All running scene downloads, the limits of their number, and counts of their results. Thread-safe.
 class DownloadTable {
 public:
     /// `registry` must outlive it.
     DownloadTable(const session::Limits& limits, metrics::Registry& registry);
 
-    /// A place for a download by `peer`: its id, or a message that names the limit.
+    /// Admits a download by `peer`: returns its id, or a message that names the exceeded limit.
     tl::expected<std::uint64_t, std::string> admit(const std::string& peer);
 
     void remove(std::uint64_t id, CallEnd end, std::uint64_t bytes_sent);
 
 private:
     struct State {
-        std::map<std::uint64_t, std::string> places; ///< whose
+        std::map<std::uint64_t, std::string> places; ///< id and peer
         std::uint64_t next_id = 1;
     };
 
@@ -32,7 +32,7 @@ private:
     metrics::Registry& registry_;
     metrics::Counter& bytes_;
     Guarded<State> state_;
-    metrics::Collector collector_; ///< last: reads the places
+    metrics::Collector collector_; ///< declared last, because it reads the places
 };
 
 } // namespace fieldcast::service

@@ -49,20 +49,20 @@ listener::Hearing FrontDoor::hearing() const {
 
 void FrontDoor::collect(metrics::Page& page) const {
     const listener::Acceptor::Counts counts = acceptor_->counts();
-    page.add_gauge({"fieldcast_connections", "Connections of clients that are open."}, {},
+    page.add_gauge({"fieldcast_connections", "Open connections of clients."}, {},
                    static_cast<double>(counts.open));
-    page.add_counter({"fieldcast_connections_accepted_total", "Connections that were let in."}, {},
+    page.add_counter({"fieldcast_connections_accepted_total", "Accepted connections."}, {},
                      static_cast<double>(counts.accepted));
     page.add_counter(
-        {"fieldcast_connections_refused_total", "Connections that were closed at once: there were enough."}, {},
+        {"fieldcast_connections_refused_total", "Connections closed at once because the limit was reached."}, {},
         static_cast<double>(counts.refused));
     page.add_counter({"fieldcast_connections_failed_total",
-                      "Times that a connection was not accepted for want of descriptors or memory."},
+                      "Connections not accepted for lack of descriptors or memory."},
                      {}, static_cast<double>(counts.failed));
-    page.add_counter({"fieldcast_self_probe_answers_total", "Times that the own port answered the server itself."}, {},
+    page.add_counter({"fieldcast_self_probe_answers_total", "Probes of the own port with an answer."}, {},
                      static_cast<double>(probe_->answers()));
     page.add_counter(
-        {"fieldcast_self_probe_failures_total", "Times that the own port did not answer the server itself."}, {},
+        {"fieldcast_self_probe_failures_total", "Probes of the own port without an answer."}, {},
         static_cast<double>(probe_->failures()));
 }
 

@@ -14,19 +14,19 @@
 
 namespace fieldcast::service {
 
-/// The port of a gRPC server. Connections are accepted here and handed to gRPC, whose own accept loop ends for good at
-/// the first shortage of descriptors (1.51.1); and the port is asked all the time whether it still answers.
+/// The port of a gRPC server. Connections are accepted here and passed to gRPC, because the accept loop of gRPC 1.51.1
+/// ends permanently at the first shortage of descriptors. The port is probed continuously.
 class FrontDoor {
 public:
-    /// Listens; callers wait until `open()`. Throws std::runtime_error if the address cannot be listened on.
+    /// Listens; callers wait until `open()`. Throws std::runtime_error if listening on the address fails.
     FrontDoor(grpc::ServerBuilder& builder, std::shared_ptr<grpc::ServerCredentials> credentials,
               const HostPort& address, const access::Security& security, const session::Limits& limits);
 
-    /// Lets callers in. Once, when the server has started; it and `registry` have to outlive this.
+    /// Starts accepting. Call it once, after the server has started. The server and `registry` must outlive this.
     void open(metrics::Registry& registry);
 
     int port() const { return sockets_.port(); }
-    listener::Hearing hearing() const; ///< while it is open
+    listener::Hearing hearing() const; ///< valid after open()
 
 private:
     void collect(metrics::Page& page) const;

@@ -8,6 +8,7 @@
 #include "server/service/catalog_service.h"
 #include "server/service/credentials.h"
 #include "server/service/front_door.h"
+#include "server/service/grpc_version.h"
 #include "server/service/light_field_service.h"
 #include "server/service/transport_log.h"
 #include "server/service/transport_options.h"
@@ -43,7 +44,7 @@ void tick_all(SessionTable& sessions) {
     }
 }
 
-/// A second look, after that at the configuration: nothing else stands between strangers and this server.
+/// Checks the protection of the address again, after the configuration did: no later check would notice a gap.
 void check_protection(const HostPort& address, const access::Security& security) {
     const access::Protection protection{.has_tls = security.certificates.has_value(),
                                         .has_tokens = security.tokens.has_value()};
@@ -56,10 +57,6 @@ void check_protection(const HostPort& address, const access::Security& security)
 }
 
 } // namespace
-
-std::string grpc_version() {
-    return grpc::Version();
-}
 
 struct GrpcServer::State {
     State(const std::vector<std::shared_ptr<feed::Feed>>& feeds, const session::Limits& session_limits,
@@ -105,21 +102,21 @@ void GrpcServer::State::tick_until(const std::stop_token& stop) {
     }
 }
 
-/// Health follows what clients see: a channel whose device hangs has not failed, but does not serve either, and nobody
-/// new is served by a port that does not answer.
+/// Health follows what clients observe. A channel whose device hangs has not failed, but it does not serve; a port that
+/// does not answer serves no new clients.
 void GrpcServer::State::look_at_channels() {
     const auto now = Clock::now();
     const auto is_silent = [&](const auto& channel) { return channel->waiting_time(now) >= limits.channel_deadline; };
     const bool is_heard = door->hearing() == listener::Hearing::kHears;
     const bool has_frames = std::ranges::none_of(channels, is_silent);
     const bool serves = is_heard && has_frames;
-    auto state = health.lock(); // also while it is told, so that draining has the last word
+    auto state = health.lock(); // locked during the update, too, so that draining cannot be overwritten
     if (!state->is_draining && serves != state->is_serving) {
         serves      ? log::info("serving again", {})
         : !is_heard ? log::error("not serving: the own port does not answer", {})
                     : log::error("no frames although clients wait", {{"ms", limits.channel_deadline.count()}});
         state->is_serving = serves;
-        server->GetHealthCheckService()->SetServingStatus(serves); // of all services, and of the empty name
+        server->GetHealthCheckService()->SetServingStatus(serves); // of all services and of the empty name
     }
 }
 
@@ -130,10 +127,12 @@ void GrpcServer::State::start_draining() {
 }
 
 void GrpcServer::State::collect(metrics::Page& page) const {
-    page.add_gauge({"fieldcast_serving", "1: health says SERVING."}, {}, health.lock()->is_serving ? 1.0 : 0.0);
+    page.add_gauge({"fieldcast_serving", "Health state: 1 is SERVING, 0 is NOT_SERVING."}, {},
+                   health.lock()->is_serving ? 1.0 : 0.0);
     if (const auto expiry = watch.certificate_expiry()) {
         const std::chrono::duration<double> since_epoch = expiry->time_since_epoch();
-        page.add_gauge({"fieldcast_certificate_expiry_timestamp_seconds", "When the certificate expires, since 1970."},
+        page.add_gauge({"fieldcast_certificate_expiry_timestamp_seconds",
+                       "Expiry of the certificate, in seconds since 1970."},
                        {}, since_epoch.count());
     }
 }
@@ -155,7 +154,7 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
     builder.RegisterService(&state_->light_field);
     state_->server = builder.BuildAndStart();
     if (state_->server == nullptr) {
-        throw std::runtime_error("gRPC does not start");
+        throw std::runtime_error("gRPC failed to start");
     }
     state_->door->open(*state_->registry);
     grpc::HealthCheckServiceInterface& health = *state_->server->GetHealthCheckService();
@@ -167,8 +166,8 @@ GrpcServer::GrpcServer(const HostPort& address, const std::vector<std::shared_pt
 
 GrpcServer::~GrpcServer() {
     if (state_->server != nullptr) {
-        state_->ticker = {}; // asks the door
-        state_->door.reset(); // hands over to the server
+        state_->ticker = {}; // it uses the door
+        state_->door.reset(); // it passes connections to the server
         state_->server->Shutdown(std::chrono::system_clock::now()); // cancels all calls and waits for their OnDone
         state_->server->Wait();
     }

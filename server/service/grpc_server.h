@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/host_port.h"
-#include "core/timing/recorder.h"
+#include "core/timing/timing_recorder.h"
 #include "server/access/access_watch.h"
 #include "server/feed/feed.h"
 #include "server/metrics/registry.h"
@@ -15,45 +15,39 @@
 
 namespace fieldcast::service {
 
-/// Port 0: any free one.
-inline const HostPort kDefaultListen{.host = "127.0.0.1", .port = 50151};
-
-/// Of the gRPC that this program is linked to at run time, as in "1.51.1".
-std::string grpc_version();
-
-/// Where the server tells what it does.
+/// Receivers of the server's metrics and frame timings.
 struct Observation {
     std::shared_ptr<metrics::Registry> registry = std::make_shared<metrics::Registry>();
-    timing::Recorder* recorder = nullptr; ///< of frames and clients; null: none; must outlive the server
+    timing::TimingRecorder* recorder = nullptr; ///< of frame timings; null: none; must outlive the server
 };
 
-/// The gRPC edge: Catalog, LightField, health and reflection. Health says SERVING from the constructor on, so make it
-/// when every channel has rendered; it says NOT_SERVING while the server drains, while somebody waits in vain for frames
-/// of a channel, and while its own port does not answer it. Heartbeats and deadlines run on a thread of its own, others
-/// accept connections, ask the own port, and follow changes of tokens and certificates.
+/// The gRPC services: Catalog, LightField, health and reflection. Health is SERVING from the constructor on, so
+/// construct it after every channel has rendered a frame. Health is NOT_SERVING while the server drains, while clients
+/// wait for frames of a channel beyond the deadline, and while the server's own port does not answer. One thread
+/// handles heartbeats and deadlines; others accept connections, probe the port, and watch tokens and certificates.
 class GrpcServer {
 public:
-    /// Throws UserError if `address` has to be protected and is not, or a file of `security` is not usable, and
-    /// std::runtime_error if the address cannot be listened on.
+    /// Throws UserError if `address` needs protection that `security` lacks or a file of `security` is not usable, and
+    /// std::runtime_error if listening on the address fails.
     GrpcServer(const HostPort& address, const std::vector<std::shared_ptr<feed::Feed>>& channels,
                const session::Limits& limits, const access::Security& security = {},
                const Observation& observation = {});
-    /// Cuts what is still open.
+    /// Cancels all open calls.
     ~GrpcServer();
 
-    int port() const; ///< the one listened on
+    int port() const; ///< the listening port
 
-    /// Health says NOT_SERVING, new sessions are refused, clients are told to go, spread over a second.
+    /// Begins to drain: health is NOT_SERVING, new sessions are refused, clients get GoingAway spread over 1 s.
     void begin_drain(const std::string& reason);
 
-    /// False: there are still sessions at `deadline`.
+    /// Waits until there are no sessions. False: there are still some at `deadline`.
     bool wait_until_drained(std::chrono::steady_clock::time_point deadline);
 
-    /// The port has not answered the server itself several times in a row: nobody new gets in.
+    /// Several probes of the port in a row had no answer: new clients cannot connect.
     bool is_deaf() const;
 
     std::size_t session_count();
-    const access::Gate& gate() const; ///< for other ways in, as long as this lives
+    const access::Gate& gate() const; ///< for other endpoints; valid as long as this object
 
 private:
     struct State;

@@ -32,7 +32,7 @@ std::shared_ptr<grpc::Channel> dial(const HealthQuestion& question) {
     return grpc::CreateCustomChannel(to_text(question.address), credentials, arguments);
 }
 
-/// HealthCheckResponse has one field: 1, an enum. Serving is 1.
+/// Parses HealthCheckResponse, whose only field has number 1 and is an enum; SERVING is 1.
 std::optional<std::string> problem_of(const grpc::ByteBuffer& answer) {
     grpc::Slice bytes;
     const bool is_readable = answer.DumpToSingleSlice(&bytes).ok();
@@ -51,7 +51,7 @@ grpc::Status ask(grpc::GenericStub& stub, const HealthQuestion& question, grpc::
     }
     const grpc::Slice nothing("");
     const grpc::ByteBuffer request(&nothing, 1);                       // HealthCheckRequest: the whole server
-    const auto ended = std::make_shared<std::promise<grpc::Status>>(); // the reaction may outlast the answer
+    const auto ended = std::make_shared<std::promise<grpc::Status>>(); // the reaction may outlive this function
     stub.UnaryCall(&context, kCheck, grpc::StubOptions(), &request, &answer,
                    [ended](const grpc::Status& status) { ended->set_value(status); });
     return ended->get_future().get();
@@ -60,7 +60,7 @@ grpc::Status ask(grpc::GenericStub& stub, const HealthQuestion& question, grpc::
 } // namespace
 
 std::optional<std::string> health_problem(const HealthQuestion& question) {
-    // gRPC 1.51 now and then takes a connection that is merely under way for a failed one: ask again.
+    // gRPC 1.51 sometimes reports a connection that is still being established as failed, so the call is repeated.
     constexpr int kAttempts = 3;
     grpc::GenericStub stub(dial(question));
     grpc::ByteBuffer answer;

@@ -12,14 +12,14 @@ namespace fieldcast::service {
 
 namespace {
 
-/// Ends a call at once.
+/// A call that ends at once with a status.
 class Refuse final : public RawReactor {
 public:
     explicit Refuse(const grpc::Status& status) { Finish(status); }
     void OnDone() override { delete this; }
 };
 
-/// Of sessions that come and go. Metrics have all of them.
+/// Quota of log lines about opened and closed sessions. The metrics count all of them.
 constexpr RateLimit::Rate kComingsAndGoings{.per_second = 4.0, .burst = 256.0};
 
 feed::SteeringRight right_of(access::Role role) {
@@ -34,7 +34,7 @@ feed::SteeringRight right_of(access::Role role) {
     return feed::SteeringRight::kNone;
 }
 
-/// Others see the name of the token, or, without tokens, which session it is.
+/// Other clients see the name of the token or, without tokens, the number of the session.
 feed::Steerer steerer_of(const access::Identity& identity, std::uint64_t session) {
     return {.name = identity.name.empty() ? "session " + std::to_string(session) : identity.name,
             .right = right_of(identity.role)};
@@ -77,15 +77,15 @@ void LightFieldService::collect(metrics::Page& page) {
         }
     }
     for (const auto& [key, count] : sessions) {
-        page.add_gauge({"fieldcast_sessions", "Open sessions, by what they get; empty labels: not configured yet."},
+        page.add_gauge({"fieldcast_sessions", "Open sessions by configuration; empty labels: not configured yet."},
                        {{"channel", key[0]}, {"mode", key[1]}, {"grid", key[2]}}, static_cast<double>(count));
     }
     for (const auto& [channel, amounts] : in_flight) {
-        page.add_gauge({"fieldcast_frames_in_flight", "Frames that were begun and are not acknowledged."},
+        page.add_gauge({"fieldcast_frames_in_flight", "Frames that were started and are not acknowledged."},
                        {{"channel", channel}}, static_cast<double>(amounts[0]));
-        page.add_gauge({"fieldcast_bytes_in_flight", "Bytes of frames that were begun and are not acknowledged."},
+        page.add_gauge({"fieldcast_bytes_in_flight", "Bytes of frames that were started and are not acknowledged."},
                        {{"channel", channel}}, static_cast<double>(amounts[1]));
-        page.add_gauge({"fieldcast_adapted_sessions", "Sessions that get less than they asked for."},
+        page.add_gauge({"fieldcast_adapted_sessions", "Sessions whose stream is reduced by adaptation."},
                        {{"channel", channel}}, static_cast<double>(amounts[2]));
     }
 }
@@ -93,12 +93,12 @@ void LightFieldService::collect(metrics::Page& page) {
 RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
     const std::string peer = context->peer();
     const auto identity = identify(*context, gate_);
-    if (!identity) { // revoked in this moment
+    if (!identity) { // revoked just now
         return new Refuse(to_status(Problem::kUnauthenticated, identity.error().message));
     }
     const auto admission = sessions_.admit(peer_host(peer), *identity);
     if (!admission) {
-        const NoPlace& problem = admission.error();
+        const AdmissionRefusal& problem = admission.error();
         metrics_.count_refused(problem.exceeded);
         refusals_.write(log::Level::kWarn, "session refused", {{"peer", peer}, {"reason", problem.message}});
         return new Refuse(to_status(problem.problem, problem.message));
@@ -116,7 +116,7 @@ RawReactor* LightFieldService::Open(grpc::CallbackServerContext* context) {
                                                 .id = id,
                                                 .on_done = [this](std::uint64_t done) { sessions_.remove(done); }});
     sessions_.add(id, stream);
-    if (!gate_.is_valid(*identity)) { // revoked since: whoever sent the others away did not see this one
+    if (!gate_.is_valid(*identity)) { // revoked since: send_away_revoked() ran before this session was in the table
         send_away_for_token(*stream);
     }
     return stream.get();
@@ -127,7 +127,7 @@ void LightFieldService::send_revoked_away() {
     for (const auto& stream : streams) {
         send_away_for_token(*stream);
     }
-    log::info("sessions without a token sent away", {{"count", streams.size()}});
+    log::info("sessions with revoked tokens sent away", {{"count", streams.size()}});
 }
 
 } // namespace fieldcast::service

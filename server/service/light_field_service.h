@@ -10,13 +10,13 @@
 
 namespace fieldcast::service {
 
-/// LightField.Open on raw bytes, so that encoded chunks are shared by all clients instead of being copied.
+/// LightField.Open on raw bytes, so that all clients share encoded chunks without copies.
 class LightFieldService final : public v1::LightField::WithRawCallbackMethod_Open<v1::LightField::Service> {
 public:
     /// Both must outlive the service.
     struct Observers {
         ServiceMetrics* metrics = nullptr;
-        timing::Recorder* recorder = nullptr; ///< null: none
+        timing::TimingRecorder* recorder = nullptr; ///< null: none
     };
 
     /// `gate` must outlive it.
@@ -27,7 +27,7 @@ public:
 
     SessionTable& sessions() { return sessions_; }
 
-    /// Sends everybody away whose token has gone.
+    /// Sends GoingAway to all sessions whose token was revoked.
     void send_revoked_away();
 
 private:
@@ -37,11 +37,11 @@ private:
     const session::Limits limits_;
     const access::Gate& gate_;
     ServiceMetrics& metrics_;
-    timing::Recorder* const recorder_; ///< null: none
+    timing::TimingRecorder* const recorder_; ///< null: none
     log::Quota refusals_;
-    log::Quota comings_; ///< and goings
+    log::Quota comings_; ///< lines about opened and closed sessions
     SessionTable sessions_;
-    metrics::Collector collector_; ///< last: reads the sessions
+    metrics::Collector collector_; ///< declared last, because it reads the sessions
 };
 
 } // namespace fieldcast::service

@@ -11,14 +11,14 @@
 
 namespace fieldcast::service {
 
-/// The bytes of one message. `head` is copied; the payload is not: the buffer keeps its owner alive, so that one
-/// encoded strip serves any number of clients.
+/// The bytes of one message. `head` is copied. The payload is not: the buffer keeps its owner alive, so all clients
+/// share one encoded strip.
 grpc::ByteBuffer to_buffer(const wire::WireChunk& chunk);
 
-/// Reads a message from outside. Empty if the bytes are not a ClientMessage.
+/// Parses a message from a client. Empty if the bytes are not a ClientMessage.
 std::optional<v1::ClientMessage> parse_client_message(const grpc::ByteBuffer& bytes);
 
-/// "ipv4:127.0.0.1:50123" -> "ipv4:127.0.0.1": what sessions of one peer have in common.
+/// The part of an address that all sessions of one peer share: "ipv4:127.0.0.1:50123" -> "ipv4:127.0.0.1".
 std::string peer_host(const std::string& peer);
 
 } // namespace fieldcast::service

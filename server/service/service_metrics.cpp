@@ -13,18 +13,18 @@ constexpr std::array kDenialNames{"no_token", "unknown_token", "role_too_low"};
 constexpr std::array kRefusalNames{"sessions", "sessions_per_peer", "opens", "draining"};
 
 metrics::Counter& closed_counter(metrics::Registry& registry, session::CloseReason reason) {
-    return registry.counter({"fieldcast_sessions_closed_total", "Sessions that ended, by reason."},
+    return registry.counter({"fieldcast_sessions_closed_total", "Ended sessions, by reason."},
                             {{"reason", std::string(to_text(reason))}});
 }
 
 metrics::Counter& refused_counter(metrics::Registry& registry, const std::string& reason) {
     return registry.counter(
-        {"fieldcast_sessions_refused_total", "Sessions that were not admitted, by what was exceeded."},
+        {"fieldcast_sessions_refused_total", "Refused sessions, by exceeded limit."},
         {{"reason", reason}});
 }
 
 metrics::Counter& denied_counter(metrics::Registry& registry, access::Denial::Kind kind) {
-    return registry.counter({"fieldcast_calls_denied_total", "Calls without a token that allows them, by reason."},
+    return registry.counter({"fieldcast_calls_denied_total", "Calls denied for lack of a sufficient token, by reason."},
                             {{"reason", kDenialNames.at(static_cast<std::size_t>(kind))}});
 }
 
@@ -32,7 +32,7 @@ metrics::Counter& denied_counter(metrics::Registry& registry, access::Denial::Ki
 
 ServiceMetrics::ServiceMetrics(metrics::Registry& registry)
     : registry_(registry),
-      opened_(registry.counter({"fieldcast_sessions_opened_total", "Sessions that were admitted."}, {})) {
+      opened_(registry.counter({"fieldcast_sessions_opened_total", "Admitted sessions."}, {})) {
     for (std::size_t i = 0; i < session::kCloseReasonCount; ++i) {
         closed_counter(registry_, static_cast<session::CloseReason>(i));
     }
@@ -65,18 +65,18 @@ void ServiceMetrics::add(const std::string& channel, const session::SessionCount
     const auto add = [&](const char* name, const char* help, const metrics::Labels& labels, std::uint64_t count) {
         registry_.counter({name, help}, labels).add(count);
     };
-    add("fieldcast_frames_sent_total", "Frames that were sent completely.", of_channel, counts.frames_sent);
+    add("fieldcast_frames_sent_total", "Completely sent frames.", of_channel, counts.frames_sent);
     add("fieldcast_frames_failed_total", "Frames that a client could not decode.", of_channel, counts.frames_failed);
-    add("fieldcast_sent_bytes_total", "Bytes of frames, headers and aborted ones included.", of_channel,
+    add("fieldcast_sent_bytes_total", "Sent bytes of frames, headers and aborted frames included.", of_channel,
         counts.bytes_sent);
-    add("fieldcast_configurations_refused_total", "Configure messages that were refused.", of_channel, counts.refusals);
+    add("fieldcast_configurations_refused_total", "Refused Configure messages.", of_channel, counts.refusals);
     for (const auto& [direction, count] :
          {std::pair("down", counts.adaptations.down), std::pair("up", counts.adaptations.up)}) {
-        add("fieldcast_adaptations_total", "Configurations that the server changed to fit a connection, by direction.",
+        add("fieldcast_adaptations_total", "Configurations that the server adapted to a connection, by direction.",
             {{"channel", channel}, {"direction", direction}}, count);
     }
     for (std::size_t i = 0; i < session::kDropReasonCount; ++i) {
-        add("fieldcast_frames_dropped_total", "Frames that a client did not get, by reason.",
+        add("fieldcast_frames_dropped_total", "Frames that were not sent to a client, by reason.",
             {{"channel", channel}, {"reason", std::string(session::kDropReasonNames.at(i))}},
             counts.drops.of(static_cast<session::DropReason>(i)));
     }

@@ -11,12 +11,12 @@
 
 namespace fieldcast::service {
 
-/// What the gRPC edge counts. Thread-safe; `registry` must outlive it.
+/// Counters of the gRPC services. Thread-safe; `registry` must outlive it.
 class ServiceMetrics {
 public:
     explicit ServiceMetrics(metrics::Registry& registry);
 
-    /// Lets the counters of `channel` begin at 0, so that their first event is a change.
+    /// Creates the counters of `channel` with value 0, so that their first event is visible as a change.
     void prepare(const std::string& channel);
 
     void count_denied(access::Denial::Kind kind);
@@ -24,7 +24,7 @@ public:
     void count_refused(const std::string& reason); ///< "sessions", "draining", …
     void count_closed(session::CloseReason reason);
 
-    /// What happened to a session of `channel` (empty: it has none yet) since the last call for it.
+    /// Adds the events of a session of `channel` (empty: it has none yet) since the last call for it.
     void add(const std::string& channel, const session::SessionCounts& counts);
 
     metrics::Registry& registry() { return registry_; }

@@ -9,13 +9,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Peers whose openings are remembered; more come only if somebody has that many addresses.
+/// Largest number of peers whose rate of opening is tracked; only a caller with very many addresses exceeds it.
 constexpr std::size_t kMaxRememberedPeers = 4096;
 
-/// All peers together may open sessions so many times as fast as one.
+/// The rate limit of all peers together is this multiple of the limit of one peer.
 constexpr double kPeersAtOnce = 10.0;
 
-NoPlace exhausted(std::string exceeded, std::string message) {
+AdmissionRefusal exhausted(std::string exceeded, std::string message) {
     return {.problem = Problem::kExhausted, .exceeded = std::move(exceeded), .message = std::move(message)};
 }
 
@@ -28,7 +28,8 @@ SessionTable::SessionTable(const session::Limits& limits)
                                                      .burst = static_cast<double>(limits.max_sessions)});
 }
 
-tl::expected<Admission, NoPlace> SessionTable::admit(const std::string& peer, const access::Identity& identity) {
+tl::expected<Admission, AdmissionRefusal> SessionTable::admit(const std::string& peer,
+                                                              const access::Identity& identity) {
     auto state = state_.lock();
     if (auto problem = problem_with(*state, peer)) {
         return tl::unexpected(std::move(*problem));
@@ -39,9 +40,10 @@ tl::expected<Admission, NoPlace> SessionTable::admit(const std::string& peer, co
     return admission;
 }
 
-std::optional<NoPlace> SessionTable::problem_with(State& state, const std::string& peer) const {
+std::optional<AdmissionRefusal> SessionTable::problem_with(State& state, const std::string& peer) const {
     if (!state.closed_because.empty()) {
-        return NoPlace{.problem = Problem::kUnavailable, .exceeded = "draining", .message = state.closed_because};
+        return AdmissionRefusal{
+            .problem = Problem::kUnavailable, .exceeded = "draining", .message = state.closed_because};
     }
     if (state.places.size() >= limits_.max_sessions) {
         return exhausted("sessions",
@@ -56,28 +58,29 @@ std::optional<NoPlace> SessionTable::problem_with(State& state, const std::strin
     if (of_peer > 0 && state.places.size() + kept >= limits_.max_sessions) {
         return exhausted("sessions", "the last " + std::to_string(kept) + " of " +
                                          std::to_string(limits_.max_sessions) +
-                                         " sessions of this server are kept for peers that have none");
+                                         " sessions of this server are reserved for peers without a session");
     }
-    if (const auto who = haste(state, peer)) { // last: only what would be admitted counts
-        return exhausted("opens", *who + " sessions too fast; try again in a few seconds");
+    if (auto problem = open_rate_problem(state, peer)) { // last, because only openings that would be admitted count
+        return exhausted("opens", std::move(*problem));
     }
     return std::nullopt;
 }
 
-std::optional<std::string> SessionTable::haste(State& state, const std::string& peer) const {
+std::optional<std::string> SessionTable::open_rate_problem(State& state, const std::string& peer) const {
+    const std::string too_fast = " sessions too fast; try again in a few seconds";
     const auto now = Clock::now();
     if (state.opens.size() >= kMaxRememberedPeers) {
         std::erase_if(state.opens, [&](const auto& known) { return known.second.is_idle(now); });
     }
     if (state.opens.size() >= kMaxRememberedPeers && !state.opens.contains(peer)) {
-        return "too many peers open";
+        return "too many peers open" + too_fast;
     }
     const RateLimit fresh({.per_second = limits_.max_opens_per_second_per_peer,
                            .burst = static_cast<double>(limits_.max_sessions_per_peer)});
     if (!state.opens.try_emplace(peer, fresh).first->second.take(now)) {
-        return "this peer opens"; // and uses nothing up for others
+        return "this peer opens" + too_fast; // takes nothing from the limit of all peers
     }
-    return state.all_opens->take(now) ? std::nullopt : std::optional<std::string>("all peers together open");
+    return state.all_opens->take(now) ? std::nullopt : std::optional("all peers together open" + too_fast);
 }
 
 session::PeerBudgets SessionTable::budgets_of(const State& state, const std::string& peer) const {
@@ -93,7 +96,7 @@ session::PeerBudgets SessionTable::budgets_of(const State& state, const std::str
 void SessionTable::add(std::uint64_t id, const std::shared_ptr<Stream>& stream) {
     auto state = state_.lock();
     const auto place = state->places.find(id);
-    if (place != state->places.end()) { // it may be over already
+    if (place != state->places.end()) { // it may have ended already
         place->second.stream = stream;
     }
 }

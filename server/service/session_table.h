@@ -15,41 +15,41 @@
 
 namespace fieldcast::service {
 
-/// Why a session was not admitted.
-struct NoPlace {
+/// Reason for refusing a session.
+struct AdmissionRefusal {
     Problem problem = Problem::kExhausted;
-    std::string exceeded; ///< the limit's name, for the metrics
+    std::string exceeded; ///< name of the exceeded limit, for the metrics
     std::string message;
 };
 
-/// A session that was admitted.
+/// An admitted session.
 struct Admission {
     std::uint64_t id = 0;
     session::PeerBudgets budgets; ///< shared by all sessions of its peer
 };
 
-/// All open streams, and the limits on their number. Thread-safe.
+/// All open streams and the limits of their number. Thread-safe.
 class SessionTable {
 public:
     explicit SessionTable(const session::Limits& limits);
 
-    /// A place for a session of `peer`, which is `identity`, or why there is none.
-    tl::expected<Admission, NoPlace> admit(const std::string& peer, const access::Identity& identity);
+    /// Admits a session of `peer` with `identity`, or returns why it is refused.
+    tl::expected<Admission, AdmissionRefusal> admit(const std::string& peer, const access::Identity& identity);
 
-    /// `stream` takes the place `id`.
+    /// Puts `stream` into the place `id`.
     void add(std::uint64_t id, const std::shared_ptr<Stream>& stream);
     void remove(std::uint64_t id);
 
-    /// No further sessions; `admit` says why.
+    /// Refuses all further sessions; `admit` returns the reason given here.
     void close(const std::string& reason);
 
     std::vector<std::shared_ptr<Stream>> streams();
 
-    /// Those whose identity `gate` does not know any more.
+    /// The streams whose identity is no longer valid for `gate`.
     std::vector<std::shared_ptr<Stream>> streams_without_token(const access::Gate& gate);
     std::size_t size();
 
-    /// False: there are still sessions at `deadline`.
+    /// Waits until there are no sessions. False: there are still some at `deadline`.
     bool wait_until_empty(session::TimePoint deadline);
 
 private:
@@ -61,19 +61,20 @@ private:
     };
     struct State {
         std::map<std::uint64_t, Place> places;
-        std::map<std::string, RateLimit> opens; ///< by peer, of those that were here lately
+        std::map<std::string, RateLimit> opens; ///< by peer, of recent peers
         std::optional<RateLimit> all_opens;
         std::uint64_t next_id = 1;
-        std::string closed_because; ///< empty: open
+        std::string closed_because; ///< reason; empty: not closed
     };
 
-    std::optional<NoPlace> problem_with(State& state, const std::string& peer) const;
-    std::optional<std::string> haste(State& state, const std::string& peer) const; ///< who opens too fast
+    std::optional<AdmissionRefusal> problem_with(State& state, const std::string& peer) const;
+    /// Counts one more opening against the rate limits. The message if `peer`, or all peers together, open too fast.
+    std::optional<std::string> open_rate_problem(State& state, const std::string& peer) const;
     session::PeerBudgets budgets_of(const State& state, const std::string& peer) const;
 
     const session::Limits limits_;
-    const std::shared_ptr<session::Budget> total_bytes_;   ///< in flight
-    const std::shared_ptr<session::Budget> total_cameras_; ///< of clients that have one each
+    const std::shared_ptr<session::Budget> total_bytes_;   ///< bytes in flight
+    const std::shared_ptr<session::Budget> total_cameras_; ///< clients' own cameras
     std::condition_variable removed_;
     Guarded<State> state_;
 };

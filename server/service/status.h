@@ -6,17 +6,17 @@
 
 namespace fieldcast::service {
 
-/// Why a call fails. The only place where status codes are chosen is `to_status`.
+/// Why a call fails. Status codes are chosen in `to_status` only.
 enum class Problem {
-    kInvalid,         ///< the caller sent something that is never right
-    kNotFound,        ///< it does not exist here
-    kOutOfRange,      ///< beyond the end
-    kExhausted,       ///< a limit is reached; later it may work
-    kUnavailable,     ///< the server is going away
-    kUnauthenticated, ///< the caller does not show who it is
-    kForbidden,       ///< the caller is known and may not
+    kInvalid,         ///< the request is never valid
+    kNotFound,        ///< the server does not have it
+    kOutOfRange,      ///< beyond the end of the data
+    kExhausted,       ///< a limit is reached; a later attempt may succeed
+    kUnavailable,     ///< the server is shutting down
+    kUnauthenticated, ///< the caller has no valid token
+    kForbidden,       ///< the caller's role does not allow the call
     kTooLate,         ///< the caller missed a deadline of the protocol
-    kOurBug,          ///< the server failed
+    kOurBug,          ///< an internal error of the server
 };
 
 grpc::Status to_status(Problem problem, const std::string& message);

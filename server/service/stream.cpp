@@ -97,7 +97,7 @@ void Stream::OnReadDone(bool ok) {
         end(grpc::Status::OK); // half-closed by the client, or cancelled, which OnCancel reports
     }
     {
-        auto state = state_.lock(); // only now: `incoming_` belongs to the read
+        auto state = state_.lock(); // not earlier: `incoming_` belongs to the read
         state->is_reading = false;
         state->has_input_ended = !ok;
     }
@@ -124,11 +124,11 @@ void Stream::receive() {
     const auto message = parse_client_message(incoming_);
     incoming_.Clear();
     if (!message) {
-        return end(to_status(Problem::kInvalid, "these bytes are no fieldcast.v1.ClientMessage"),
+        return end(to_status(Problem::kInvalid, "the message is not a fieldcast.v1.ClientMessage"),
                    session::CloseReason::kInvalid);
     }
     if (message->has_configure()) {
-        publish_counts(); // they belong to the channel that it may leave
+        publish_counts(); // the message may change the channel, and these counts belong to the old one
     }
     bool is_flooded = false;
     try {
@@ -147,7 +147,7 @@ void Stream::receive() {
     }
 }
 
-void Stream::log_configuration(session::Session& session) const {
+void Stream::log_configuration(session::ServerSession& session) const {
     const auto& configuration = session.configuration();
     if (!configuration) {
         return session.lines().write(log::Level::kInfo, "configuration refused", {{"session", setup_.id}});
@@ -174,9 +174,9 @@ void Stream::take_frame(const feed::FramePtr& frame) {
 void Stream::OnWriteDone(bool ok) {
     outgoing_.Clear();
     if (!ok) {
-        end(to_status(Problem::kUnavailable, "the stream broke"));
+        end(to_status(Problem::kUnavailable, "the stream was interrupted"));
     }
-    state_.lock()->is_writing = false; // only now: `outgoing_` belongs to the write
+    state_.lock()->is_writing = false; // not earlier: `outgoing_` belongs to the write
     pump();
 }
 
@@ -189,7 +189,7 @@ void Stream::OnCancel() {
 void Stream::go_away(const std::string& reason, session::TimePoint at, session::CloseReason why) {
     {
         auto state = state_.lock();
-        if (!state->verdict) { // otherwise it ends for a reason of its own
+        if (!state->verdict) { // otherwise it has another reason already
             state->session->go_away(reason, at, why);
         }
     }
@@ -277,7 +277,7 @@ bool Stream::pin_if_overdue(session::TimePoint now) {
 }
 
 void Stream::cut() {
-    context_.TryCancel(); // the write in flight comes back with ok == false
+    context_.TryCancel(); // the write in flight then returns with ok == false
     state_.lock()->is_pinned = false;
 }
 

@@ -3,8 +3,8 @@
 
 namespace fieldcast::service {
 
-/// From now on what gRPC itself reports goes to our log, at most 20 lines at once and one per second on average:
-/// strangers who cannot shake hands must not fill the disk. For the whole process.
+/// Redirects gRPC's own messages to this program's log for the whole process. At most 20 lines at once and one per
+/// second on average are written, so that callers with failing handshakes cannot fill the disk.
 void log_transport();
 
 } // namespace fieldcast::service

@@ -10,10 +10,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr int kMaxStreamsPerConnection = 64;
-constexpr std::size_t kTransportMemoryBytes = 256U << 20; // what gRPC takes for reading and for calls
+constexpr std::size_t kTransportMemoryBytes = 256U << 20; // gRPC's memory for reading and for calls
 constexpr int kMaxTransportThreads = 64;
-constexpr int kMaxHeaderBytes = 8 << 10;   // of one call; ours have a few hundred, tokens included
-constexpr int kMaxFrameBytes = 16 << 10;   // the least that HTTP/2 allows
+constexpr int kMaxHeaderBytes = 8 << 10;   // of one call; our own headers have a few hundred bytes, tokens included
+constexpr int kMaxFrameBytes = 16 << 10;   // the smallest value that HTTP/2 allows
 constexpr int kHeaderTableBytes = 4 << 10; // per connection, HTTP/2's default
 
 } // namespace

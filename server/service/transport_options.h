@@ -7,7 +7,7 @@
 
 namespace fieldcast::service {
 
-/// What gRPC lets one connection do, and all of them together: sizes, streams, memory, threads, deadlines.
+/// gRPC's limits for one connection and for all of them: sizes, streams, memory, threads, deadlines.
 void set_transport_options(grpc::ServerBuilder& builder, const session::Limits& limits);
 
 } // namespace fieldcast::service

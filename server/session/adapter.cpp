@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kUsualQueueDelay{100};
 constexpr milliseconds kLongestQueueDelay{10'000};
-constexpr std::chrono::seconds kLongestRoundTrip{10}; ///< what a client may claim
+constexpr std::chrono::seconds kLongestRoundTrip{10}; ///< longest that a client may claim
 
 milliseconds max_queue_delay(const v1::Adaptation& bounds) {
     const milliseconds asked(bounds.max_queue_delay_ms());

@@ -11,7 +11,7 @@ namespace {
 using std::chrono::nanoseconds;
 
 constexpr std::chrono::seconds kWindow{10};
-constexpr std::chrono::seconds kLongestDecode{10}; ///< what a client may claim
+constexpr std::chrono::seconds kLongestDecode{10}; ///< longest that a client may claim
 
 double seconds(nanoseconds time) {
     return std::chrono::duration<double>(time).count();
@@ -37,7 +37,7 @@ void Credits::sent(FrameKey key, TimePoint now) {
 bool Credits::acknowledged(FrameKey key, nanoseconds decode_time, TimePoint now) {
     const auto frame = std::ranges::find(frames_, key, &Frame::key);
     if (frame == frames_.end() || !frame->sent) {
-        return false; // also a client that acknowledges what it cannot have received
+        return false; // also if the client acknowledges a frame that it cannot have received completely
     }
     decode_time = std::clamp(decode_time, nanoseconds(0), nanoseconds(kLongestDecode));
     add_round_trip(std::max(now - *frame->sent - decode_time, nanoseconds(0)), now);

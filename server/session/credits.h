@@ -10,10 +10,15 @@ namespace fieldcast::session {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 
+/// `time` as messages carry it: on the server's steady clock, ns.
+inline std::int64_t nanoseconds_of(TimePoint time) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
+}
+
 inline constexpr std::uint32_t kMinCredits = 2;
 inline constexpr std::uint32_t kMaxCredits = 8;
 
-/// A frame of one stream. Epochs tell channels apart, whose frame ids may collide.
+/// Identifies a frame of one stream. The epoch is needed because frame ids of two channels may be equal.
 struct FrameKey {
     std::uint32_t epoch = 0;
     std::uint64_t frame_id = 0;
@@ -21,32 +26,32 @@ struct FrameKey {
     bool operator==(const FrameKey&) const = default;
 };
 
-/// Bounds what was sent and not yet acknowledged: a finished write does not mean that the peer has read it.
-/// At most ceil(fps · (min RTT + decode time)) + 1 frames, clamped to 2 … 8, and a number of bytes.
+/// Bounds the frames that were sent and are not yet acknowledged, because a finished write does not mean that the peer
+/// has read it: at most ceil(fps · (min RTT + decode time)) + 1 frames, clamped to 2 … 8, and a number of bytes.
 class Credits {
 public:
     Credits(double frames_per_second, std::uint64_t max_bytes) : fps_(frames_per_second), max_bytes_(max_bytes) {}
 
-    /// Room for one more frame? A frame larger than the byte cap may go alone.
+    /// Whether one more frame may be sent. A frame larger than the byte limit may be sent alone.
     bool allow(std::uint64_t frame_bytes) const;
 
-    /// A frame is being sent.
+    /// The first chunk of a frame is handed to the transport.
     void spend(FrameKey frame, std::uint64_t frame_bytes, TimePoint now);
 
-    /// Its last chunk was handed to the transport: the round trip starts.
+    /// The last chunk was handed to the transport: the round trip starts.
     void sent(FrameKey frame, TimePoint now);
 
-    /// The client has handled it, having decoded for `decode_time` of its own clock. False: nothing to give back
-    /// (a repetition, or never sent).
+    /// The client has handled the frame and spent `decode_time` on it, by its own clock. False: a repetition, or a
+    /// frame that was never sent; nothing changes.
     bool acknowledged(FrameKey frame, std::chrono::nanoseconds decode_time, TimePoint now);
 
-    /// It was aborted.
+    /// The frame was aborted and is not in flight any more.
     void give_back(FrameKey frame);
 
-    /// The frames still in flight belong to an earlier configuration, the limits to the new one.
+    /// Sets the limits of a new configuration; frames of an earlier one stay in flight.
     void configure(double frames_per_second, std::uint64_t max_bytes);
 
-    std::uint32_t limit() const;
+    std::uint32_t limit() const; ///< frames
     std::uint32_t in_flight() const { return static_cast<std::uint32_t>(frames_.size()); }
     std::uint64_t bytes_in_flight() const;
 

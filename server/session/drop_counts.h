@@ -12,11 +12,11 @@ namespace fieldcast::session {
 enum class DropReason : std::uint8_t {
     kSending,      ///< an older frame was still being sent
     kNoCredit,     ///< too many frames or bytes unacknowledged
-    kRateCap,      ///< the client asked for fewer frames
-    kReconfigured, ///< made for an earlier configuration, or aborted because of a new one
-    kLeaving,      ///< the server had said GoingAway
-    kNoKeyFrame,   ///< it refers to a key frame that the client did not get
-    kNoBudget,     ///< too many bytes unacknowledged by its peer, or by everybody
+    kRateCap,      ///< the client asked for fewer frames per second
+    kReconfigured, ///< the frame was made for an earlier configuration, or aborted because of a new one
+    kLeaving,      ///< the server had sent GoingAway
+    kNoKeyFrame,   ///< the frame refers to a key frame that the client did not get
+    kNoBudget,     ///< too many bytes unacknowledged by its peer, or by all peers together
 };
 inline constexpr std::size_t kDropReasonCount = 7;
 inline constexpr std::array<std::string_view, kDropReasonCount> kDropReasonNames{

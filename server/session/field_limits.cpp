@@ -11,7 +11,7 @@ namespace {
 using Configure = v1::Configure;
 using Preference = v1::CodecPreference;
 
-/// Largest `size` among what a client says about planes.
+/// The largest `size` of all codec preferences in `wanted`.
 template <class Size> std::size_t largest(const Configure& wanted, const Size& size) {
     std::size_t most = 0;
     for (const Preference& preference : wanted.codecs()) {
@@ -20,7 +20,8 @@ template <class Size> std::size_t largest(const Configure& wanted, const Size& s
     return most;
 }
 
-// Counts leave room for modes, codecs, formats and planes that newer clients know: servers pass those over.
+// Newer clients may name modes, codecs, formats and planes that this server does not know and passes over: the counts
+// leave room for them.
 constexpr std::array kFieldLimits{
     FieldLimit{"channel", feed::kMaxChannelNameBytes, "bytes", [](const Configure& m) { return m.channel().size(); }},
     FieldLimit{"resume_token", 256, "bytes", [](const Configure& m) { return m.resume_token().size(); }},

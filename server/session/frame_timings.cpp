@@ -23,7 +23,7 @@ Outcome outcome_of(const v1::FrameAck& ack) {
     }
 }
 
-/// The client's times on the server's clock; without a known offset they stay unknown.
+/// Adds the client's times, on the server's clock; they stay unknown if the clock offset is.
 void add_times(const v1::FrameAck& ack, DeliveredFrame& record) {
     if (!ack.has_clock()) {
         return;
@@ -51,7 +51,7 @@ timing::MadeFrame made_frame(const std::string& channel, const feed::EncodedFram
                            .encode_begin_ns = frame.times.encode_begin_ns,
                            .encode_end_ns = frame.times.encode_end_ns,
                            .stages = frame.header.render_times};
-    for (const wire::EncodedViews& views : frame.views) { // their times begin with those of the source
+    for (const wire::EncodedViews& views : frame.views) { // times of views repeat those of the source first
         const auto& times = views.header.render_times;
         const bool is_first_of_batch = std::ranges::none_of(frame.views, [&](const wire::EncodedViews& other) {
             return &other < &views && other.header.render_times == times;
@@ -113,7 +113,7 @@ void FrameTimings::aborted(FrameKey key) {
 void FrameTimings::acknowledged(const v1::FrameAck& ack) {
     const auto record = find({.epoch = ack.epoch(), .frame_id = ack.frame_id()});
     if (record == pending_.end() || record->send_end_ns == 0) {
-        return; // also of what the client cannot have received
+        return; // also if the client acknowledges a frame that it cannot have received
     }
     record->outcome = outcome_of(ack);
     add_times(ack, *record);

@@ -13,25 +13,27 @@
 
 namespace fieldcast::session {
 
+/// The part of a timing record that the channel knows: when `frame` was rendered and encoded.
 timing::MadeFrame made_frame(const std::string& channel, const feed::EncodedFrame& frame);
 
-/// Collects when the frames of one client were where, from what the session does and what the client acknowledges. A
-/// record is finished when the client has said what became of the frame, or when kMaxPending younger ones wait for
-/// that.
+/// Collects the timing records of one client's frames from the session's sending and the client's acknowledgements. A
+/// record is finished when the client has reported the frame's outcome, or when kMaxPending younger records are
+/// unfinished. Not thread-safe.
 class FrameTimings {
 public:
-    /// Off at first: then everything else does nothing.
+    /// Starts recording. Before, all other functions do nothing.
     void enable() { is_enabled_ = true; }
 
+    /// The first chunk of `frame`, with `payload_bytes` in all, is handed to the transport.
     void begun(FrameKey key, const std::string& channel, const feed::EncodedFrame& frame, std::uint64_t payload_bytes);
     void sent(FrameKey key, const wire::ServerTimes& times);
     void aborted(FrameKey key);
     void acknowledged(const v1::FrameAck& ack);
 
-    /// Nothing more will be heard: all records are finished.
+    /// The client has gone: finishes all records.
     void end();
 
-    /// Those that were finished since the last call; at most kMaxPending of them are kept.
+    /// The records that were finished since the last call; at most the newest kMaxPending of them.
     std::vector<timing::DeliveredFrame> take_finished();
 
     static constexpr std::size_t kMaxPending = 32;

@@ -9,12 +9,12 @@
 
 namespace fieldcast::session {
 
-static_assert(std::is_trivially_copyable_v<Rung>, "rungs are many: they own nothing");
+static_assert(std::is_trivially_copyable_v<Rung>, "a ladder has many rungs, so they must not allocate");
 
 namespace {
 
-// Expected bytes after a step, as a share of those before; see docs/benchmarks.md, "Codecs". They only choose how far
-// to go at once: what is measured afterwards decides.
+// Expected bytes after a step, as a share of those before; see docs/benchmarks.md, "Codecs". They only decide how many
+// steps are taken at once; measurements afterwards correct them.
 constexpr double kLossyShareOfViews = 0.15;
 constexpr double kLossyShareOfPlanes = 0.5; // depth, normal, id and material stay as they are
 constexpr double kQualityShare = 0.7;
@@ -44,7 +44,7 @@ template <class Numbers> bool contains(const Numbers& numbers, int number) {
     return std::ranges::find(numbers, number) != numbers.end();
 }
 
-/// That codec and quality for that plane, instead of what was said about it.
+/// Replaces the codec preference for `plane` in `wanted`.
 void set_codec(v1::Configure& wanted, PlaneSemantic plane, Codec codec, std::uint8_t quality) {
     const v1::PlaneSemantic semantic = wire::to_proto(plane);
     const auto same = [&](const v1::CodecPreference& p) { return p.semantic() == semantic; };
@@ -58,7 +58,7 @@ void set_codec(v1::Configure& wanted, PlaneSemantic plane, Codec codec, std::uin
 
 } // namespace
 
-/// Builds rungs, each on the one before.
+/// Builds the rungs of a ladder, each from the one before.
 class LadderBuilder {
 public:
     LadderBuilder(const v1::Adaptation& bounds, const Configuration& granted, Ladder& ladder)
@@ -172,7 +172,7 @@ private:
         }
     }
 
-    /// The client makes all views that it asked for by itself. Helps where two planes are less than the views were.
+    /// Mode SCENE: the client renders its views itself. Added only if the two planes are smaller than the views were.
     void add_scene() {
         if (!contains(bounds_.modes(), v1::DELIVERY_MODE_SCENE)) {
             return;

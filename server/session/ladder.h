@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/session/negotiate.h"
+#include "server/session/configuration.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace fieldcast::session {
 
-/// One way to send less: what differs from what the client asked for. 0 and false: nothing.
+/// One way to send less: how it differs from what the client asked for. 0, false and unset mean no difference.
 struct Rung {
-    /// What differs from the rung before.
+    /// The difference from the rung before.
     enum class Step : std::uint8_t { kNone, kCodec, kQuality, kRate, kSize, kGrid, kMode };
 
-    double cost = 1.0; ///< bytes per second relative to what was asked for; an expectation
+    double cost = 1.0; ///< expected bytes per second, relative to what was asked for
     Step step = Step::kNone;
-    std::optional<Codec> codec{};   ///< of planes that were lossless and that it can carry
-    bool is_scene = false;          ///< mode SCENE
+    std::optional<Codec> codec{};   ///< replaces lossless codecs on planes that it can carry
+    bool is_scene = false;          ///< delivery mode becomes SCENE
     std::uint8_t quality = 0;       ///< of planes in lossy codecs
     std::uint8_t rate_divisor = 1;  ///< of the frame rate
     std::uint32_t width_px = 0;     ///< of a view, together with the height
@@ -29,28 +29,28 @@ struct Rung {
     std::uint32_t cols = 0;
 };
 
-/// What a server may do about a bad connection, within `wanted.adaptation`, the least painful first: codec, quality,
-/// frame rate, size of the views, number of views, delivery mode. Rung 0 is what was asked for and got `granted`; costs
-/// fall. Keeps one message, and makes that of a rung when it is asked for.
+/// The reductions that `wanted.adaptation` allows on a bad connection, the least visible first: codec, quality, frame
+/// rate, size of the views, number of views, delivery mode. Rung 0 is `wanted` itself, which was answered by `granted`;
+/// costs fall from rung to rung. Keeps one message and derives the message of a rung from it on demand.
 class Ladder {
 public:
     Ladder(const v1::Configure& wanted, const Configuration& granted);
 
     std::span<const Rung> rungs() const { return rungs_; }
 
-    /// What a client with less to ask for would have sent.
+    /// The Configure of a client that asks for no more than `rung`.
     v1::Configure configure(const Rung& rung) const;
 
-    /// What is different from the rung before, for people.
+    /// The difference from the rung before, as text for people.
     std::string change(const Rung& rung) const;
 
 private:
     friend class LadderBuilder;
 
-    v1::Configure wanted_; ///< without what no rung needs
+    v1::Configure wanted_; ///< without adaptation and resume token
     ViewGrid grid_;        ///< spacing and anchor as granted
     float frames_per_second_ = 0.0F;
-    std::vector<wire::PlaneChoice> pictures_; ///< the planes that lossy codecs can carry, as granted
+    std::vector<wire::PlaneChoice> pictures_; ///< planes that lossy codecs can carry, as granted
     std::vector<Rung> rungs_;
 };
 

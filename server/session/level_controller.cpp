@@ -10,25 +10,25 @@ namespace fieldcast::session {
 
 namespace {
 
-/// Share of what is delivered now that a level may be expected to need: a queue must drain.
+/// A level is expected to fit if it needs at most this share of the rate that is delivered now: a queue must drain.
 constexpr double kUsableShare = 0.8;
 
-/// Share of frames that may be missing; some always are, when client and server do not keep step.
+/// Share of frames that may be missed without consequence; client and server are never exactly in step.
 constexpr double kAcceptedMisses = 0.1;
 
-/// Share of the bound beyond which missing frames are blamed on the connection. Jitter makes frames miss as well,
-/// because credits follow the smallest round trip, and delays all of half a second by a third of 100 ms (simulated, 50
-/// ± 20 ms each way).
+/// Share of the delay bound above which missed frames are attributed to the connection. Jitter alone makes frames miss,
+/// too, because credits follow the smallest round trip; it delays every frame of half a second by a third of 100 ms
+/// (simulated, 50 ± 20 ms each way).
 constexpr double kStarvedShare = 0.4;
 
-/// Levels passed over at once, at most: expectations are rough.
+/// Most levels taken at once on the way down: expected costs are rough.
 constexpr std::size_t kLongestStepDown = 3;
 
 } // namespace
 
 LevelController::LevelController(std::vector<double> costs, std::chrono::milliseconds max_queue_delay)
     : costs_(std::move(costs)), max_queue_delay_(max_queue_delay) {
-    FC_ASSERT(!costs_.empty(), "level 0 is always there");
+    FC_ASSERT(!costs_.empty(), "level 0 always exists");
 }
 
 void LevelController::add(const LinkSample& sample, TimePoint now) {
@@ -77,7 +77,7 @@ std::optional<LevelChange> LevelController::step_down(const LevelChange& measure
     if (std::exchange(stepped_up_, std::nullopt)) {
         patience_ = std::min<std::chrono::seconds>(2 * patience_, kLongestPatience);
     }
-    // What this level needs and cannot have shows in two ways: frames that are missing, and the delay of the others.
+    // A level that needs too much shows in two ways: missed frames, and the delay of the others.
     const auto bound = static_cast<double>(std::max<std::int64_t>(max_queue_delay_.count(), 1));
     const double excess = std::max(1.0, static_cast<double>(measured.queue_delay.count()) / bound);
     const std::size_t level = level_for(costs_[level_] * kUsableShare * (1.0 - missed_share) / excess);

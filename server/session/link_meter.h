@@ -10,30 +10,29 @@
 
 namespace fieldcast::session {
 
-/// What one acknowledged frame says about the way to the client.
+/// Measurement of the connection from one acknowledged frame.
 struct LinkSample {
     std::uint64_t bytes = 0;
-    std::chrono::nanoseconds queue_delay{
-        0}; ///< time on the way beyond the smallest round trip: waiting and transmission
+    std::chrono::nanoseconds queue_delay{0}; ///< time beyond the smallest round trip: queueing and transmission
 };
 
-/// Measures how long frames are on the way to one client, from their acknowledgements.
+/// Measures from acknowledgements how long frames take to reach one client. Not thread-safe.
 class LinkMeter {
 public:
     using Nanoseconds = std::chrono::nanoseconds;
 
     /// The first chunk of a frame is handed to the transport.
     void begun(FrameKey key, std::uint64_t bytes, TimePoint now);
-    void aborted(FrameKey key);
+    void aborted(FrameKey key); ///< the rest of the frame will not be sent
 
-    /// The client has handled the frame, having decoded for `decode_time`. No sample if the frame was begun behind one
-    /// of an earlier epoch: it has waited for what that epoch left on the way.
+    /// The client has handled the frame and spent `decode_time` on it. Empty for a repetition, and if a frame of an
+    /// earlier epoch was in flight when this one was begun: this one had to wait for it.
     std::optional<LinkSample> acknowledged(FrameKey key, Nanoseconds decode_time, TimePoint now);
 
-    /// Another measurement of the round trip, such as that of time synchronisation, which has no large frame in it.
+    /// Another measurement of the round trip, such as that of time synchronisation, which transmits no large frame.
     void add_round_trip(Nanoseconds round_trip, TimePoint now);
 
-    /// Smallest of the last 30 to 60 s.
+    /// Smallest round trip of the last 30 to 60 s; unset before the first measurement.
     std::optional<Nanoseconds> base_round_trip() const;
 
 private:
@@ -43,7 +42,7 @@ private:
         TimePoint begun;
         bool is_behind_old_epoch = false;
     };
-    std::deque<Frame> frames_; ///< on the way, oldest first; at most kMaxCredits
+    std::deque<Frame> frames_; ///< in flight, oldest first; at most kMaxCredits
     std::optional<Nanoseconds> window_min_;
     std::optional<Nanoseconds> previous_window_min_;
     TimePoint window_begin_{};

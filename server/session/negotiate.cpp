@@ -4,6 +4,7 @@
 #include "core/lightfield/frame_rate.h"
 #include "server/session/quality_rungs.h"
 #include "server/session/recorded.h"
+#include "server/session/wanted_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +107,7 @@ Chosen<ViewGrid> choose_grid(const v1::Configure& wanted, const feed::ChannelInf
     return *chosen;
 }
 
-/// Width and height of a view, 0 standing for the source's.
+/// Width and height of a view, px; 0 in `wanted` means the source's.
 Chosen<glm::uvec2> choose_size(const v1::Configure& wanted, const feed::ChannelInfo& channel) {
     const glm::uvec2 asked(wanted.view_width_px(), wanted.view_height_px());
     const glm::uvec2 source(channel.source_width_px, channel.source_height_px);
@@ -130,7 +131,7 @@ Chosen<float> choose_fovy(const v1::Configure& wanted, const feed::ChannelInfo& 
     if (asked == 0.0F) {
         return channel.fovy_rad;
     }
-    constexpr float kRounding = 1.0F + 1e-5F; // a client may have computed the source's from degrees
+    constexpr float kRounding = 1.0F + 1e-5F; // a client may have computed the source's field of view from degrees
     if (!(asked > 0.0F) || !(asked <= channel.fovy_rad * kRounding)) {
         return invalid("fovy_rad", text(asked) + " rad asked, more than 0 and at most " + text(channel.fovy_rad) +
                                        " (the source's) allowed");
@@ -160,7 +161,7 @@ Chosen<wire::ViewSet> choose_view_set(const v1::Configure& wanted, const feed::C
     return wire::ViewSet{.grid = *grid, .width_px = size->x, .height_px = size->y, .fovy_rad = *fovy};
 }
 
-/// The first format wanted for that plane that it can be sent in; empty: the usual one.
+/// The first wanted format that `semantic` can be sent in; empty: the usual one.
 Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, PlaneSemantic semantic) {
     const v1::CodecPreference* const preference = find_preference(wanted, semantic);
     if (preference == nullptr || preference->formats().empty()) {
@@ -178,7 +179,7 @@ Chosen<std::optional<PlaneFormat>> choose_format(const v1::Configure& wanted, Pl
                       " is supported; " + std::string(word_of(usual)) + " is");
 }
 
-/// A recording has the qualities that it has; channels that encode keep to few.
+/// The quality to send. Recordings offer only their recorded qualities; channels that encode round to kQualityRungs.
 std::uint8_t choose_quality(std::uint32_t asked, const feed::ChannelInfo& channel) {
     const bool is_recorded = !channel.recorded.empty() && asked != 0;
     return is_recorded ? static_cast<std::uint8_t>(asked) : quality_rung(asked, channel.lossy_quality);
@@ -191,7 +192,7 @@ std::string codecs_for_every_plane() {
     return alternatives<Codec>(codecs);
 }
 
-/// The first codec wanted for that plane that we have, at the quality wanted.
+/// The first wanted codec that the server supports for `semantic`, at the wanted quality.
 Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemantic semantic,
                                         const feed::ChannelInfo& channel) {
     const v1::CodecPreference* const preference = find_preference(wanted, semantic);
@@ -211,7 +212,7 @@ Chosen<codec::Encoding> choose_encoding(const v1::Configure& wanted, PlaneSemant
     }
     return refuse(v1::REFUSAL_REASON_UNSUPPORTED, "codecs",
                   "no codec asked for plane " + std::string(word_of(semantic)) +
-                      " is supported; every plane can have " + codecs_for_every_plane());
+                      " is supported; every plane can be sent as " + codecs_for_every_plane());
 }
 
 Chosen<feed::Selection> choose_planes(const v1::Configure& wanted, const feed::ChannelInfo& channel,
@@ -271,23 +272,6 @@ Chosen<std::uint32_t> choose_chunk_bytes(const v1::Configure& wanted, const Limi
 }
 
 } // namespace
-
-std::vector<PlaneSemantic> asked_planes(const v1::Configure& wanted, DeliveryMode mode) {
-    std::vector<WarpPlane> extra;
-    for (const WarpPlane plane : kAll<WarpPlane>) {
-        if (std::ranges::find(wanted.warp_planes(), static_cast<int>(plane)) != wanted.warp_planes().end()) {
-            extra.push_back(plane);
-        }
-    }
-    const auto set = from_number<PlaneSet>(static_cast<std::uint64_t>(wanted.planes()));
-    return planes_of(mode, set.value_or(PlaneSet::kIllumination), extra);
-}
-
-const v1::CodecPreference* find_preference(const v1::Configure& wanted, PlaneSemantic semantic) {
-    const auto found = std::ranges::find(wanted.codecs(), wire::to_proto(semantic),
-                                         [](const v1::CodecPreference& p) { return p.semantic(); });
-    return found == wanted.codecs().end() ? nullptr : &*found;
-}
 
 tl::expected<Configuration, Refusal> negotiate(const v1::Configure& asked, Channels channels, const Limits& limits) {
     const auto channel = choose_channel(asked.channel(), channels);

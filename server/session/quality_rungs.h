@@ -6,10 +6,11 @@
 
 namespace fieldcast::session {
 
-/// Qualities of lossy codecs that clients get, rising. Few, so that clients share encodings whatever they ask for.
+/// Qualities that lossy codecs are used with, ascending. They are few, so that clients with different wishes share
+/// encodings.
 inline constexpr std::array<std::uint8_t, 6> kQualityRungs{10, 25, 40, 55, 75, 90};
 
-/// The best quality that is not above `asked`, or the lowest one. The channel's own counts as well; 0 asks for it.
+/// The best of kQualityRungs and `of_channel` that is not above `asked`, else the lowest rung. 0 asks for `of_channel`.
 inline std::uint8_t quality_rung(std::uint32_t asked, std::uint8_t of_channel) {
     if (asked == 0) {
         return of_channel;

@@ -2,7 +2,7 @@
 #include "server/session/recorded.h"
 
 #include "core/wire/convert.h"
-#include "server/session/negotiate.h"
+#include "server/session/wanted_planes.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ namespace fieldcast::session {
 
 namespace {
 
-constexpr std::array kUnasked{v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW}; // what clients get that name no codecs
+constexpr std::array kUnasked{v1::CODEC_ZSTD_FILTERED, v1::CODEC_RAW}; // for clients that name no codecs
 
 bool is_format_wanted(const wire::PlaneChoice& recorded, const v1::CodecPreference& preference) {
     return preference.formats().empty() ||
@@ -20,7 +20,7 @@ bool is_format_wanted(const wire::PlaneChoice& recorded, const v1::CodecPreferen
                preference.formats().end();
 }
 
-/// How early the client names that codec; nothing: it does not want it.
+/// Position of the recorded codec in the client's list, 0 first; empty: the client does not want this encoding.
 std::optional<std::size_t> rank_of(const wire::PlaneChoice& recorded, const v1::Configure& wanted) {
     const auto place_in = [&](const auto& codecs) -> std::optional<std::size_t> {
         const auto found = std::ranges::find(codecs, wire::to_proto(recorded.encoding.codec));
@@ -56,7 +56,7 @@ wire::PlaneChoice colour_of(const feed::ViewSelection& recorded) {
     return {.semantic = PlaneSemantic::kColour, .encoding = recorded.format.encoding};
 }
 
-/// Whether everything that `wanted` says about views fits that recording.
+/// Whether size, field of view and grid in `wanted` match the recorded views.
 bool fits(const v1::Configure& wanted, const feed::ViewSelection& recorded, const feed::ChannelInfo& channel) {
     const wire::ViewFormat& format = recorded.format;
     const bool has_size = wanted.view_width_px() == 0 && wanted.view_height_px() == 0;
@@ -103,7 +103,7 @@ bool narrow_views(v1::Configure& wanted, const feed::ChannelInfo& channel) {
     return true;
 }
 
-/// Of a mode whose clients make their own views.
+/// For modes whose clients make their own views. False: no recorded form has the wanted planes.
 bool narrow_planes(v1::Configure& wanted, const feed::ChannelInfo& channel, DeliveryMode mode) {
     const std::vector<PlaneSemantic> asked = asked_planes(wanted, mode);
     const auto is_asked = [&](const wire::PlaneChoice& choice) {
@@ -163,8 +163,8 @@ std::optional<RecordedProblem> recorded_problem(const feed::Selection& selection
     }
     const bool wants_planes = std::holds_alternative<feed::PlaneSelection>(selection);
     return RecordedProblem{.field = !has_mode ? "modes" : wants_planes ? "planes" : "grid",
-                           .message = "channel '" + channel.name + "' is a recording without " + feed::to_text(selection) +
-                                      "; recorded: " + recorded};
+                           .message = "channel '" + channel.name + "' is a recording without " +
+                                      feed::to_text(selection) + "; recorded: " + recorded};
 }
 
 } // namespace fieldcast::session

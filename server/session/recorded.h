@@ -8,19 +8,20 @@
 #include <optional>
 #include <string>
 
-// Channels that show a recording have what was recorded and nothing else.
+// Channels that replay a recording offer only the forms that were recorded.
 namespace fieldcast::session {
 
-/// `wanted` with what it leaves open set so that the recording has it, if it can be; with other channels: unchanged.
-/// Lossy codecs are chosen only where they were asked for, as ever.
+/// `wanted`, with its open fields set to a recorded form if one fits; unchanged if the channel is not a recording.
+/// Lossy codecs are chosen only where the client named them.
 v1::Configure narrowed(v1::Configure wanted, const feed::ChannelInfo& channel);
 
+/// Why a recording cannot serve a selection.
 struct RecordedProblem {
     std::string field; ///< of Configure
-    std::string message;
+    std::string message; ///< names the recorded forms
 };
 
-/// Why `selection` cannot be had, naming what was recorded; nothing if it can.
+/// Why the channel cannot serve `selection`; empty: it can, or it is not a recording.
 std::optional<RecordedProblem> recorded_problem(const feed::Selection& selection, const feed::ChannelInfo& channel);
 
 } // namespace fieldcast::session

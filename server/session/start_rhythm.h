@@ -7,9 +7,11 @@
 
 namespace fieldcast::session {
 
-/// How often frames of one client can be begun, whatever holds them up: its acknowledgements, its network, or nothing.
+/// Averages the time between the starts of one client's frames, whether acknowledgements, the network or nothing limits
+/// them. Not thread-safe.
 class StartRhythm {
 public:
+    /// A frame is begun.
     void begun(TimePoint now) {
         if (last_) {
             const auto between = now - *last_;
@@ -18,11 +20,11 @@ public:
         last_ = now;
     }
 
-    /// When the next one is likely to be begun; it may be in the past.
+    /// Expected start of the next frame; may be in the past.
     TimePoint next(TimePoint now) const { return last_.value_or(now) + between_; }
 
 private:
-    static constexpr int kNewest = 4; ///< a new one counts for a quarter
+    static constexpr int kNewest = 4; ///< the newest interval has the weight 1/4
 
     std::optional<TimePoint> last_;
     TimePoint::duration between_{};

@@ -9,6 +9,9 @@ namespace fieldcast::session {
 
 namespace {
 
+constexpr const char* kNoSteerableCamera = "first configure a channel whose camera clients can steer";
+constexpr const char* kNotHolder = "send RequestSteering first and wait for SteeringGranted";
+
 using Denial = feed::SteeringDenial;
 using Loss = feed::SteeringLoss;
 
@@ -44,7 +47,7 @@ v1::ServerMessage denied(const Denial& denial) {
     denied.set_waits(denial.is_waiting);
     denied.set_ahead(denial.ahead);
     denied.set_message(denial.reason == Denial::Reason::kRoleTooLow
-                           ? "steering needs the role steer, taking the camera from somebody the role admin"
+                           ? "steering needs the role steer; taking the camera from another client needs the role admin"
                            : "the camera is steered by " + denial.holder);
     return message;
 }
@@ -56,7 +59,7 @@ v1::ServerMessage released(std::uint64_t lease, v1::SteeringReleaseReason reason
     return message;
 }
 
-/// The nearest rotation that keeps the viewing direction, as clients' matrices are rounded.
+/// `pose` made exactly rigid, since clients' matrices are rounded; the viewing direction stays.
 glm::mat4 rigid(const glm::mat4& pose) {
     const glm::vec3 z = glm::normalize(glm::vec3(pose[2]));
     const glm::vec3 x = glm::normalize(glm::vec3(pose[0]) - z * glm::dot(z, glm::vec3(pose[0])));
@@ -93,7 +96,7 @@ void SteeringDesk::leave() {
 
 void SteeringDesk::handle(const v1::RequestSteering& message, TimePoint now) {
     if (!is_at_camera()) {
-        return deny(v1::STEERING_DENIAL_REASON_NOT_STEERABLE, "configure a channel whose camera is steered first", 0);
+        return deny(v1::STEERING_DENIAL_REASON_NOT_STEERABLE, kNoSteerableCamera, 0);
     }
     seat_.request(message.takes()   ? feed::SteeringUrgency::kTake
                   : message.waits() ? feed::SteeringUrgency::kWait
@@ -104,12 +107,11 @@ void SteeringDesk::handle(const v1::RequestSteering& message, TimePoint now) {
 
 void SteeringDesk::handle(const v1::SteerCamera& message, TimePoint now) {
     if (!is_at_camera()) {
-        return deny(v1::STEERING_DENIAL_REASON_NOT_STEERABLE, "configure a channel whose camera is steered first",
-                    message.sequence());
+        return deny(v1::STEERING_DENIAL_REASON_NOT_STEERABLE, kNoSteerableCamera, message.sequence());
     }
     if (message.world_from_camera().empty()) {
         if (!seat_.renew(now)) {
-            deny(v1::STEERING_DENIAL_REASON_NOT_HOLDER, "ask with RequestSteering first", message.sequence());
+            deny(v1::STEERING_DENIAL_REASON_NOT_HOLDER, kNotHolder, message.sequence());
         }
         return;
     }
@@ -122,14 +124,15 @@ void SteeringDesk::handle(const v1::SteerCamera& message, TimePoint now) {
 
 void SteeringDesk::steer(const v1::SteerCamera& message, const glm::mat4& pose, TimePoint now) {
     if (!poses_.take(now)) {
-        return deny(v1::STEERING_DENIAL_REASON_TOO_FAST, "more poses than a client may send", message.sequence());
+        return deny(v1::STEERING_DENIAL_REASON_TOO_FAST, "the client sends more poses per second than it may",
+                    message.sequence());
     }
     const feed::SteeredPose wanted{.sequence = message.sequence(),
                                    .client_time_ns = message.client_time_ns(),
                                    .world_from_camera = rigid(pose),
                                    .cut = message.cut()};
     if (!seat_.steer(wanted, now)) {
-        deny(v1::STEERING_DENIAL_REASON_NOT_HOLDER, "ask with RequestSteering first", message.sequence());
+        deny(v1::STEERING_DENIAL_REASON_NOT_HOLDER, kNotHolder, message.sequence());
     }
 }
 

@@ -11,15 +11,15 @@
 
 namespace fieldcast::web {
 
-/// How far an exchange has come. Where somebody has to go, those of the first stage go first.
+/// Progress of an exchange. If a connection must be closed, those of the first stage are closed first.
 enum class Stage : std::uint8_t {
-    kParting,   ///< has its answer
-    kAsking,    ///< shakes hands, or sends its request
-    kAnswering, ///< is sent its answer
+    kParting,   ///< has received its answer
+    kAsking,    ///< performs the handshake or sends its request
+    kAnswering, ///< is receiving its answer
 };
 
-/// Who is connected, and who has to go when there are too many. It is never the newest one, so that callers who say
-/// nothing do not keep others out. Not thread-safe.
+/// The open connections, and the choice of the one to close when there are too many. The newest one is never chosen, so
+/// that silent connections cannot block new ones. Not thread-safe.
 class ConnectionTable {
 public:
     using Id = std::uint64_t;
@@ -28,13 +28,13 @@ public:
 
     Id add(const std::string& network);
     void move_to(Id id, Stage stage);
-    void remove(Id id); ///< does nothing if it is gone
+    void remove(Id id); ///< does nothing if there is no such connection
 
-    /// Whom to cut because there is one too many: of the newest one's network, if that has too many, else of the
-    /// network that has most. Of those the earliest stage goes first, and in one stage the oldest.
+    /// The connection to close if there is one too many: one of the newest connection's network if that network has too
+    /// many, else of the network with most connections. Among those, the earliest stage and then the oldest is chosen.
     std::optional<Id> surplus() const;
 
-    /// Whom to cut of all, in the same order, so that there is room for one who is not in the table yet.
+    /// The connection to close, chosen from all in the same order, to make room for one that is not in the table yet.
     std::optional<Id> first_to_go() const { return first_of_largest(entries_); }
 
 private:
@@ -48,7 +48,7 @@ private:
 
     ConnectionLimits limits_;
     Id next_id_ = 1;
-    std::vector<Entry> entries_; ///< in the order in which they came
+    std::vector<Entry> entries_; ///< in the order of arrival
 };
 
 } // namespace fieldcast::web

@@ -34,16 +34,16 @@ using Error = boost::system::error_code;
 using TlsStream = asio::ssl::stream<boost::beast::tcp_stream&>;
 
 constexpr int kBacklog = 128;
-constexpr std::size_t kSpareDescriptors = 4; // a caller's, and what collecting numbers opens meanwhile
+constexpr std::size_t kSpareDescriptors = 4; // for one caller and for collecting its metrics
 constexpr std::chrono::milliseconds kAcceptPause{100};
 constexpr std::size_t kMostDrainedBytes = 64 * 1024;
 
-/// Asio's sockets are inherited by programs that the process starts, unless told otherwise.
+/// Keeps programs that this process starts from inheriting the socket, which is the default of Asio.
 void close_on_exec(int descriptor) {
     ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
 }
 
-/// Whom an address counts for: itself, or with IPv6 its /64, of which one caller has all addresses.
+/// Network of an address for limits: the IPv4 address itself or the IPv6 /64, because one caller has a whole /64.
 std::string network_of(const asio::ip::address& address) {
     if (address.is_v4()) {
         return address.to_string();
@@ -57,19 +57,19 @@ std::string network_of(const asio::ip::address& address) {
     return {bytes.begin(), bytes.begin() + kPrefixBytes};
 }
 
-/// What all exchanges of an endpoint share.
+/// State shared by all exchanges of an endpoint.
 struct Service {
     Service(std::vector<Route> pages, const access::Gate* guard, const Limits& bounds)
         : limits(bounds), routes(std::move(pages)), gate(guard), connections(bounds.connections) {}
 
     Limits limits;
     std::vector<Route> routes;
-    const access::Gate* gate; ///< null: everybody may ask
+    const access::Gate* gate; ///< null: all callers are admitted
     ConnectionTable connections;
     SpareDescriptors spares{kSpareDescriptors};
 };
 
-/// One connection, from accepting to closing. Lives as long as one of its operations is under way.
+/// One connection, from accepting to closing. Lives as long as one of its operations is pending.
 class Exchange : public std::enable_shared_from_this<Exchange> {
 public:
     Exchange(Service& service, ConnectionTable::Id id, tcp::socket socket)
@@ -85,16 +85,16 @@ private:
     void close_after_answer();
     void drain();
 
-    /// Makes the next operations fail `time` from now, or when the whole exchange has to be over.
+    /// Sets the deadline of the next operations to `time` from now, at most to the end of the whole exchange.
     void expire_in(std::chrono::milliseconds time) { socket_.expires_at(std::min(Clock::now() + time, end_)); }
 
-    /// Whether closing drops what the caller has not taken yet; otherwise the system keeps it, for minutes.
+    /// Whether closing discards unsent data; otherwise the system keeps it, for minutes.
     void forget_unsent(bool is_wanted) {
         Error ignored;
         socket_.socket().set_option(asio::socket_base::linger(is_wanted, 0), ignored);
     }
 
-    /// Calls `use` with what carries text.
+    /// Calls `use` with the stream that carries text: TLS or the plain socket.
     template <class Use> void with_stream(Use use) {
         if (tls_) {
             use(*tls_);
@@ -103,7 +103,7 @@ private:
         }
     }
 
-    /// What to do after an operation, whatever came of it.
+    /// Wraps a handler that runs after an operation, with or without an error.
     template <class Next> auto anyway(Next next) {
         return [self = shared_from_this(), next](const Error& error, std::size_t count = 0) {
             try {
@@ -115,7 +115,7 @@ private:
         };
     }
 
-    /// What to do after an operation; an error ends the exchange.
+    /// Wraps a handler that runs after a successful operation; an error ends the exchange.
     template <class Next> auto then(Next next) {
         return anyway([this, next](const Error& error, std::size_t count) { error ? finish() : next(count); });
     }
@@ -137,7 +137,7 @@ void Exchange::begin(ssl_ctx_st* tls) {
         read();
         return;
     }
-    asio::ssl::context context(tls); // the stream keeps what it needs of it
+    asio::ssl::context context(tls); // the stream keeps a reference to what it needs
     tls_.emplace(socket_, context);
     expire_in(service_.limits.handshake);
     tls_->async_handshake(TlsStream::server, then([this](std::size_t) {
@@ -161,7 +161,7 @@ void Exchange::read() {
 
 void Exchange::answer(const ReadRequest& request) {
     service_.connections.move_to(id_, Stage::kAnswering);
-    service_.spares.release(); // pages open files
+    service_.spares.release(); // pages may open files
     const Answer answer = request ? respond(*request, service_.routes, service_.gate) : request.error();
     service_.spares.refill();
     text_ = text_of(answer, request && request->method == "HEAD");
@@ -172,7 +172,7 @@ void Exchange::answer(const ReadRequest& request) {
     });
 }
 
-/// Closing at once would take the answer back from callers that have sent more than was read.
+/// Waits before closing: closing at once would discard the answer of callers that sent more than was read.
 void Exchange::part() {
     service_.connections.move_to(id_, Stage::kParting);
     forget_unsent(false);
@@ -203,7 +203,7 @@ void Exchange::finish() {
     service_.spares.refill();
 }
 
-/// Nothing on loopback. Throws UserError if TLS or tokens are needed and missing.
+/// The TLS context; none on loopback. Throws UserError if TLS or tokens are required and missing.
 std::optional<access::TlsContext> tls_for(const Listening& listening) {
     const auto& [address, flag, security] = listening;
     if (is_loopback(address.host)) {
@@ -229,7 +229,7 @@ tcp::acceptor listen_on(asio::io_context& context, const HostPort& address) {
     const auto found = resolver.resolve(without_brackets(address.host), std::to_string(address.port),
                                         tcp::resolver::passive | tcp::resolver::numeric_service, error);
     if (error) {
-        throw std::runtime_error("cannot listen on " + to_text(address) + ": there is no such host");
+        throw std::runtime_error("cannot listen on " + to_text(address) + ": unknown host");
     }
     for (const auto& candidate : found) {
         tcp::acceptor acceptor(context);
@@ -271,19 +271,19 @@ private:
     void welcome(tcp::socket socket);
     void cut(ConnectionTable::Id id);
 
-    std::optional<access::TlsContext> tls_; ///< unset: plain text, for everybody
+    std::optional<access::TlsContext> tls_; ///< unset: plain text for all callers
     Service service_;
     std::map<ConnectionTable::Id, std::weak_ptr<Exchange>> exchanges_;
     asio::io_context context_{1};
     tcp::acceptor acceptor_;
     int port_;
     asio::steady_timer pause_;
-    bool is_waiting_ = false; ///< for a caller, or for the end of the pause
-    bool is_deaf_ = false;    ///< so that it is said once
+    bool is_waiting_ = false; ///< waits for a caller or for the end of the pause
+    bool is_deaf_ = false;    ///< already logged that accepting fails
     std::jthread thread_;
 };
 
-/// Until it is told to stop, which leaves all exchanges as they are; they end with `context_`.
+/// Runs until the stop request, which does not finish the exchanges; they are destroyed with `context_`.
 void Endpoint::Impl::run(const std::stop_token& stop) {
     const std::stop_callback end(stop, [this] { context_.stop(); });
     while (!stop.stop_requested()) {
@@ -293,13 +293,13 @@ void Endpoint::Impl::run(const std::stop_token& stop) {
             }
             context_.run();
         } catch (const std::exception& problem) {
-            log::error("web endpoint", {{"problem", problem.what()}}); // what threw is over; the others go on
+            log::error("web endpoint", {{"problem", problem.what()}}); // only the failed exchange ends
         }
     }
 }
 
 void Endpoint::Impl::await_caller() {
-    // Not async_accept: without a descriptor the system refuses to accept even where there is nobody to accept.
+    // Not async_accept: without a descriptor, accepting fails even if no caller is waiting.
     acceptor_.async_wait(tcp::acceptor::wait_read, [this](const Error&) {
         is_waiting_ = false;
         tcp::socket caller(context_);
@@ -309,7 +309,7 @@ void Endpoint::Impl::await_caller() {
             return;
         }
         is_deaf_ = false;
-        await_caller(); // first, whatever becomes of this one
+        await_caller(); // first, independent of this caller
         if (!error) {
             welcome(std::move(caller));
         }
@@ -317,7 +317,7 @@ void Endpoint::Impl::await_caller() {
     is_waiting_ = true;
 }
 
-/// If descriptors have run out, the endpoint uses its reserve, and cuts callers until it has that back.
+/// Handles a lack of descriptors: the endpoint uses its reserve and closes connections until the reserve is refilled.
 Error Endpoint::Impl::accept(tcp::socket& caller) {
     Error error;
     bool has_more_room = true;
@@ -333,7 +333,7 @@ Error Endpoint::Impl::accept(tcp::socket& caller) {
     return error;
 }
 
-/// False if there is nobody to cut.
+/// False if there is no connection to close.
 bool Endpoint::Impl::cut_first() {
     const auto first = service_.connections.first_to_go();
     if (first) {
@@ -342,10 +342,10 @@ bool Endpoint::Impl::cut_first() {
     return first.has_value();
 }
 
-/// Somebody else has to make room.
+/// Accepting failed; tries again after a pause, in which other connections may end.
 void Endpoint::Impl::pause(const Error& error) {
     if (!std::exchange(is_deaf_, true)) {
-        log::warn("web endpoint cannot accept callers, and tries again", {{"problem", error.message()}});
+        log::warn("web endpoint cannot accept callers and tries again", {{"problem", error.message()}});
     }
     pause_.expires_after(kAcceptPause);
     pause_.async_wait([this](const Error&) { await_caller(); });
@@ -357,12 +357,12 @@ void Endpoint::Impl::welcome(tcp::socket socket) {
     close_on_exec(socket.native_handle());
     const tcp::endpoint caller = socket.remote_endpoint(error);
     if (error) {
-        return; // has gone already
+        return; // has already disconnected
     }
     const ConnectionTable::Id id = service_.connections.add(network_of(caller.address()));
     try {
         if (const auto surplus = service_.connections.surplus()) {
-            log::debug("a caller was cut in favour of another one", {{"connection", *surplus}});
+            log::debug("connection closed in favour of a new one", {{"connection", *surplus}});
             cut(*surplus);
         }
         std::erase_if(exchanges_, [](const auto& entry) { return entry.second.expired(); });

@@ -10,26 +10,26 @@
 
 namespace fieldcast::web {
 
-/// Where an endpoint listens, and what protects it.
+/// Address of an endpoint and its protection.
 struct Listening {
     HostPort address; ///< port 0: any free one
-    std::string flag; ///< that chose the address; for messages
+    std::string flag; ///< the flag of the address, for messages
     access::Security security;
 };
 
-/// Answers HTTP/1.1 at an address, one request per connection and many connections at once, in one thread of its own.
-/// On loopback in plain text and to everybody; elsewhere over TLS, with certificates that are read again when they
-/// change, to tokens that the gate knows. Nobody is waited for longer than `limits` say, and its end waits for nobody.
+/// Answers HTTP/1.1 at an address: one request per connection, many connections at once, in one thread of its own. On
+/// loopback it uses plain text and admits all callers. Elsewhere it uses TLS and requires a token that the gate knows;
+/// certificates are read again when they change. `limits` bound the time of every exchange; the destructor waits for
+/// none.
 class Endpoint {
 public:
-    /// `gate` must outlive it; handlers of routes run in its thread, one at a time. Throws UserError if the address has
-    /// to be protected and is not, or if the certificate is not usable, and std::runtime_error if it cannot be listened
-    /// on.
+    /// `gate` must outlive it; handlers of routes run in its thread, one at a time. Throws UserError if the address
+    /// needs protection that is missing or the certificate is not usable, and std::runtime_error if listening fails.
     Endpoint(const Listening& listening, const access::Gate& gate, std::vector<Route> routes,
              const Limits& limits = {});
     ~Endpoint();
 
-    int port() const; ///< the one listened on
+    int port() const; ///< the listening port
 
 private:
     class Impl;

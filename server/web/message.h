@@ -7,9 +7,9 @@
 
 namespace fieldcast::web {
 
-/// What routes look at in a request.
+/// The parts of a request that routes use.
 struct Request {
-    std::string method; ///< any word
+    std::string method; ///< as sent, not checked
     std::string path;   ///< begins with '/'; without query
     std::optional<std::string> authorization;
 };
@@ -22,7 +22,7 @@ struct Answer {
     std::string body;
 };
 
-/// A whole answer as it goes over the wire, after which the connection ends. HEAD gets no body.
+/// The bytes of a complete answer, after which the connection ends. The answer to HEAD has no body.
 std::string text_of(const Answer& answer, bool is_head);
 
 } // namespace fieldcast::web

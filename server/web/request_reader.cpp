@@ -23,17 +23,17 @@ tl::unexpected<Answer> refuse(int status, const std::string& problem) {
 
 tl::unexpected<Answer> refuse(const boost::system::error_code& error) {
     const bool is_body_too_large = error == http::error::body_limit;
-    return refuse(is_body_too_large ? 413 : 400, "this is no request that this server understands: " + error.message());
+    return refuse(is_body_too_large ? 413 : 400, "malformed request: " + error.message());
 }
 
-/// What routes need of a complete request.
+/// The parts of a complete request that routes use.
 ReadRequest to_request(const Message& message) {
     const std::string target(message.target().data(), message.target().size());
     if (!target.starts_with('/')) {
-        return refuse(400, "the target of a request begins with '/'");
+        return refuse(400, "the target of a request must begin with '/'");
     }
     if (message.count(http::field::authorization) > 1) {
-        return refuse(400, "a request has one Authorization");
+        return refuse(400, "a request must have at most one Authorization header");
     }
     Request request{.method = std::string(message.method_string().data(), message.method_string().size()),
                     .path = target.substr(0, target.find('?')),
@@ -49,9 +49,9 @@ ReadRequest to_request(const Message& message) {
 
 struct RequestReader::State {
     http::request_parser<http::string_body> parser;
-    std::string waiting;    ///< came, and was not parsed yet
-    std::size_t parsed = 0; ///< bytes so far
-    std::size_t most_bytes; ///< of a whole request, with what chunks add to a body
+    std::string waiting;    ///< received, but not parsed yet
+    std::size_t parsed = 0; ///< parsed bytes so far
+    std::size_t most_bytes; ///< limit of a whole request, including the overhead of chunks
 };
 
 RequestReader::RequestReader(const Limits& limits) : state_(std::make_unique<State>()) {
@@ -77,7 +77,7 @@ std::optional<ReadRequest> RequestReader::put(std::string_view bytes) {
     }
     const bool is_done = state.parser.is_done();
     if (state.parsed + (is_done ? 0 : state.waiting.size()) > state.most_bytes) {
-        return refuse(413, "a request has at most " + std::to_string(state.most_bytes) + " bytes");
+        return refuse(413, "a request must have at most " + std::to_string(state.most_bytes) + " bytes");
     }
     return is_done ? std::optional(to_request(state.parser.get())) : std::nullopt;
 }

@@ -9,17 +9,17 @@
 
 namespace fieldcast::web {
 
-/// A request, or what its sender is told because it is none.
+/// A request, or the answer to a malformed one.
 using ReadRequest = tl::expected<Request, Answer>;
 
-/// Reads one request of HTTP/1.0 or 1.1 from bytes as they come.
+/// Parses one HTTP/1.0 or 1.1 request incrementally.
 class RequestReader {
 public:
     explicit RequestReader(const Limits& limits);
     ~RequestReader();
 
-    /// Takes the next bytes. Nothing until the request is complete, body included; do not call it afterwards. Bytes
-    /// after the request are left out.
+    /// Parses the next bytes. Returns nothing until the request is complete, body included; do not call it afterwards.
+    /// Bytes after the request are ignored.
     std::optional<ReadRequest> put(std::string_view bytes);
 
 private:

@@ -21,13 +21,13 @@ std::string paths_of(const std::vector<Route>& routes) {
     return text;
 }
 
-/// Problems of pages are for the log.
+/// Calls the route's handler; its exceptions go to the log, not to the caller.
 Answer answer_of(const Route& route, const Request& request) {
     try {
         return route.get(request);
     } catch (const std::exception& problem) {
         log::warn("page failed", {{"path", route.path}, {"problem", problem.what()}});
-        return say(500, "the page failed; the log of the server says why");
+        return say(500, "the page failed; see the log of the server");
     }
 }
 
@@ -45,9 +45,9 @@ Answer respond(const Request& request, const std::vector<Route>& routes, const a
         }
     }
     if (request.method != "GET" && request.method != "HEAD") {
-        return say(405, "GET it");
+        return say(405, "use GET or HEAD");
     }
-    return is_known ? answer_of(*route, request) : say(404, "there is no such page; there is " + paths_of(routes));
+    return is_known ? answer_of(*route, request) : say(404, "unknown page; available: " + paths_of(routes));
 }
 
 } // namespace fieldcast::web

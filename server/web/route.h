@@ -9,14 +9,14 @@
 
 namespace fieldcast::web {
 
-/// A path that can be asked for with GET and HEAD.
+/// A path that answers GET and HEAD.
 struct Route {
     std::string path;
-    access::Role role = access::Role::kAdmin; ///< the least that may ask, where tokens are asked for
+    access::Role role = access::Role::kAdmin; ///< lowest role that may request it, if tokens are required
     std::function<Answer(const Request&)> get;
 };
 
-/// What a request gets. Without `gate` everybody may ask; paths without a route need the highest role.
+/// The answer to a request. Without `gate` all callers are admitted; paths without a route need the highest role.
 Answer respond(const Request& request, const std::vector<Route>& routes, const access::Gate* gate);
 
 } // namespace fieldcast::web

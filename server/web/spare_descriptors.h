@@ -5,7 +5,7 @@
 
 namespace fieldcast::web {
 
-/// Descriptors that are open for nothing, so that there are some left when the process has run out of them.
+/// Reserved descriptors, which can be released when the process has run out of descriptors.
 class SpareDescriptors {
 public:
     explicit SpareDescriptors(std::size_t count) : count_(count) { refill(); }
@@ -13,8 +13,8 @@ public:
     SpareDescriptors(const SpareDescriptors&) = delete;
     SpareDescriptors& operator=(const SpareDescriptors&) = delete;
 
-    bool release(); ///< gives all back; false if there were none
-    void refill();  ///< as far as the process may open some
+    bool release(); ///< closes all; false if there were none
+    void refill();  ///< reopens as many as possible
     bool is_full() const { return open_.size() == count_; }
 
 private:

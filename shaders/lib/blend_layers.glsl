@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// BLEND surfaces in front of what a pixel sees.
+// BLEND surfaces in front of the visible surface of a pixel.
 #ifndef FIELDCAST_LIB_BLEND_LAYERS
 #define FIELDCAST_LIB_BLEND_LAYERS
 #include "lib/traversal.glsl"
 #include "shared/frame.h"
 
-// The nearest two of them with t < `t_max`, nearest first.
+// The nearest two BLEND surfaces with t < `t_max`, nearest first.
 void find_layers(VisibilityBuffer layers, uint pixel, vec3 origin, vec3 direction, float t_max) {
     float t_min = 0.0;
     for (uint layer = 0u; layer < kMaxLayers; ++layer) {

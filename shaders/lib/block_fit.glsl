@@ -11,7 +11,7 @@ struct Features {
     vec3 square;
 };
 
-// What they are counted from.
+// Means and scale that the features are relative to, as in BlockFit.
 struct FitFrame {
     vec3 normal;
     vec3 centre;

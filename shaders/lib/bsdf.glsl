@@ -3,8 +3,9 @@
 // GGX: B. Walter et al. Microfacet Models for Refraction through Rough Surfaces. EGSR 2007; height-correlated Smith.
 // Visible normals: J. Dupuy, A. Benyoub. Sampling Visible GGX Normals with Spherical Caps. CGF 42(8), 2023.
 // Multiple scattering: E. Turquin. Practical multiple scattering compensation for microfacet models. 2019.
-// Differs from glTF's appendix B: what reflection leaves to the other lobes is 1 − its directional albedo instead of
-// 1 − F(v·h), so that the lobes add up to no more than the light there is (albedo scaling, as in Turquin's section 6).
+// Differs from glTF's appendix B: reflection leaves 1 − its directional albedo to the other lobes instead of 1 −
+// F(v·h), so that the lobes together reflect no more than the incident light (albedo scaling, as in Turquin's section
+// 6).
 // All directions are unit vectors in the frame of the shading normal (z), pointing away from the surface.
 #ifndef FIELDCAST_LIB_BSDF
 #define FIELDCAST_LIB_BSDF
@@ -38,7 +39,7 @@ vec2 ggx_albedo(float cos_view, float roughness) {
     return mix(top, bottom, f.y);
 }
 
-// What is needed to evaluate and sample the BSDF at one surface point for one viewing direction.
+// Parameters of the BSDF at one surface point for one viewing direction, for evaluation and sampling.
 struct Bsdf {
     mat3 world_from_local;
     vec3 view;                // local, towards the viewer
@@ -47,8 +48,8 @@ struct Bsdf {
     vec3 compensation;        // of the reflection
     vec3 transmission;        // scale of the transmitted lobe
     float alpha;              // GGX
-    vec3 diffuse_modulation;  // what diffuse illumination is multiplied with
-    vec3 specular_modulation; // what specular illumination is divided by and multiplied with again
+    vec3 diffuse_modulation;  // factor of diffuse illumination
+    vec3 specular_modulation; // divisor of specular illumination, and its factor later
     float probability_diffuse;
     float probability_specular;
     float probability_transmission;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one level of an edge-avoiding filter sums up for one kind of light: SVGF, section 4.4, equations 2 and 5. The
+// Sums of one level of an edge-avoiding filter for one kind of light: SVGF, section 4.4, equations 2 and 5. The
 // including kernel has `params.sigma_luminance`.
 #ifndef FIELDCAST_LIB_FILTER_SIGNAL
 #define FIELDCAST_LIB_FILTER_SIGNAL

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What filters over the source share: their inputs and SVGF's edge-stopping weights. The including kernel has `params`
-// with cameras, source_count, width, height, sigma_depth and normal_squarings as in FilterParams.
+// Inputs and SVGF's edge-stopping weights, which filters over the source share. The including kernel has `params` with
+// cameras, source_count, width, height, sigma_depth and normal_squarings as in FilterParams.
 // Follows: C. Schied et al. Spatiotemporal Variance-Guided Filtering. HPG 2017, section 4.4, equations 3 to 5.
 // Differs: the depth term compares with the plane through the centre pixel's neighbourhood by its depth gradient, made
 // from the normal instead of screen space derivatives, which a ray traced G-buffer does not have.
@@ -32,7 +32,7 @@ struct Centre {
     float pixel_angle;   // between neighbouring pixels' rays
 };
 
-// Depth of a plane through the surface point changes across the image by this much per pixel.
+// Change of depth per pixel across the image, of a plane through the surface point.
 vec2 depth_gradient(CameraRecord camera, ivec2 at, float depth, vec3 normal) {
     vec3 ray = camera_direction(camera, vec2(at) + 0.5);
     float along = dot(normal, ray);
@@ -55,7 +55,7 @@ Centre load_centre(uint index, uvec4 geometry) {
     return c;
 }
 
-// How alike two pixels see the lobes that their surfaces reflect: a mirror's turns twice as far as its normal.
+// Similarity of the lobes that two pixels' surfaces reflect: a mirror's lobe turns twice as far as its normal.
 float lobe_similarity(Centre c, ivec2 offset, uvec4 geometry) {
     float turned = 8.0 * max(0.0, 1.0 - dot(c.normal, unpack_normal(geometry.y)));
     float apart = dot(vec2(offset), vec2(offset)) * c.pixel_angle * c.pixel_angle;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What filters read of a pixel's surface (GeometryTexel of shared/frame.h).
+// Surface of a pixel for filters (GeometryTexel of shared/frame.h).
 #ifndef FIELDCAST_LIB_GEOMETRY_TEXEL
 #define FIELDCAST_LIB_GEOMETRY_TEXEL
 #include "lib/surface.glsl"

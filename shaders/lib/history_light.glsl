@@ -7,7 +7,7 @@
 #include "lib/history_taps.glsl"
 #include "lib/known_light.glsl"
 
-// Texel of a source of the frame before whose nearest pixel to `position` shows that surface; kNoIndex: it does not.
+// Texel of a source of the previous frame: the pixel nearest to `position`; kNoIndex if it shows another surface.
 uint texel_in_history(uint source, vec3 position, Surface s, uint id) {
     CameraRecord camera = params.cameras.at[params.source_count + source];
     vec3 p = camera_project(camera, position);
@@ -26,8 +26,8 @@ uint texel_in_history(uint source, vec3 position, Surface s, uint id) {
     return is_same ? texel : kNoIndex;
 }
 
-// Light that `s`, seen from anywhere, reflects; false: no source showed it, or what they showed depends on the viewer too
-// much. Emission is not part of it.
+// Light that `s` reflects to any viewer, without its emission. False if no source showed it, or if its light depends on
+// the viewer too much.
 bool light_in_history(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3 reflected) {
     reflected = vec3(0.0);
     if (!looks_alike_from_anywhere(s, b)) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light of holes as it is stored.
+// Storage format of the light of holes.
 #ifndef FIELDCAST_LIB_HOLE_LIGHT
 #define FIELDCAST_LIB_HOLE_LIGHT
 
-// Illumination of a hole and how many frames of it were averaged.
+// Illumination of a hole, and the number of frames that were averaged.
 struct HoleLight {
     vec3 diffuse;
     vec3 specular;

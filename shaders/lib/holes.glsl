@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What kernels over holes share: surfaces and light of holes. The including kernel has `params` (HoleParams) and binds
+// Surfaces and light of holes, which kernels over holes share. The including kernel has `params` (HoleParams) and binds
 // set 1.
 #ifndef FIELDCAST_LIB_HOLES
 #define FIELDCAST_LIB_HOLES
@@ -17,7 +17,7 @@ struct HoleSum {
     float weight;
 };
 
-// Adds a hole if it shows the target's surface. `weighs_frames`: holes count as often as they have frames.
+// Adds a hole if it shows the target's surface. `weighs_frames`: a hole's weight is multiplied by its number of frames.
 void gather_hole(HoleFrame frame, uint view, CameraRecord camera, ivec2 at, float weight, Target target, float slack,
                  bool weighs_frames, inout HoleSum sum) {
     uint number = weight > 0.0 ? hole_number(frame, view, at, params.width, params.height) : kNoIndex;

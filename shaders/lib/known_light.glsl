@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of which surfaces images know the light that they send elsewhere.
+// Surfaces whose light in an image is also valid for other viewers.
 #ifndef FIELDCAST_LIB_KNOWN_LIGHT
 #define FIELDCAST_LIB_KNOWN_LIGHT
 #include "lib/bsdf.glsl"
 
-const float kMaxSpecularShare = 0.25; // of a surface that may be seen from elsewhere than the source
+const float kMaxSpecularShare = 0.25; // largest share of a surface whose light is valid for other viewers
 
 bool looks_alike_from_anywhere(Surface s, Bsdf b) {
     bool is_rough = s.roughness >= 0.35 || luminance(b.specular_modulation) <= 0.05;

@@ -70,8 +70,8 @@ float pdf_environment(SceneInfo info, vec3 normal, vec3 direction) {
     return probability * size.x / (2.0 * kPi * max(top - bottom, 1e-9)); // texel's solid angle, exactly
 }
 
-// Index below `count`, and in `rest` how far inside its share the numbers lie. A float's 24 bits are too few for the
-// texels of an environment and their alias decision, so the low bits of `fine` follow those of `u`.
+// Index below `count`; `rest` is the position inside that index's share. A float's 24 bits are too few for the texels
+// of an environment and their alias decision, so the low bits of `fine` follow those of `u`.
 uint pick_index(float u, float fine, uint count, out float rest) {
     uint bits = (uint(u * 16777216.0) << 8) | (uint(fine * 16777216.0) & 255u);
     uint index;
@@ -111,14 +111,14 @@ LightSample sample_environment(SceneInfo info, vec3 normal, float choice, vec2 u
     return s;
 }
 
-// Solid angle density of meeting `emitter` at `distance_m` under `cos_light` by next event estimation. `area_m2` is the
-// triangle's area now: instances may grow.
+// Solid angle density with which next event estimation meets `emitter` at `distance_m` under `cos_light`. `area_m2` is
+// the triangle's current area, because instances may grow.
 float pdf_emitter(uint emitter, float area_m2, float distance_m, float cos_light) {
     float probability = texelFetch(emitters_, int(emitter) * 2 + 1).x;
     return probability * distance_m * distance_m / max(area_m2 * cos_light, 1e-12);
 }
 
-// How much of a surface there is where light sampling found it: the tracer meets MASK and BLEND surfaces less often.
+// Coverage of the surface that light sampling found, because the tracer meets MASK and BLEND surfaces less often.
 float emitter_coverage(WorldTriangle t, vec2 barycentrics) {
     uint mode = floatBitsToUint(texelFetch(materials_, int(t.material) * 5 + 3).y) & kMaterialAlphaMask;
     if (mode == kAlphaOpaque) {
@@ -195,7 +195,7 @@ LightSample sample_punctual(SceneInfo info, vec3 position, float choice, vec2 u)
     return s;
 }
 
-// One sample of next event estimation over all lights. `choice` picks the kind of light and is used up.
+// One sample of next event estimation over all lights. `choice` picks the kind of light and may not be used again.
 LightSample sample_light(SceneInfo info, vec3 position, vec3 normal, float choice, vec2 u) {
     LightSample s;
     float probability;

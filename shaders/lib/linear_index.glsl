@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels over long lists: devices allow only 65535 groups per dimension, so longer lists go on in y.
+// Indices of kernels over long lists: devices allow only 65535 groups per dimension, so longer lists go on in y.
 #ifndef FIELDCAST_LIB_LINEAR_INDEX
 #define FIELDCAST_LIB_LINEAR_INDEX
 #include "shared/frame.h"

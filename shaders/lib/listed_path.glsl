@@ -7,7 +7,7 @@
 #include "lib/views.glsl"
 #include "lib/visible_surface.glsl"
 
-// Seed of a pixel: never a position in a compacted list.
+// Seed of a pixel. It never depends on a position in a compacted list.
 uint pixel_seed(uint view_seed, uint x, uint y) {
     return hash_combine(view_seed, x | (y << 16));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages of the sources (shared/frame.h): what their pixels see, and the BLEND surfaces in front of that.
+// Pages of the sources (shared/frame.h): the visible surfaces of their pixels, and the BLEND surfaces in front of them.
 #ifndef FIELDCAST_LIB_PAGES
 #define FIELDCAST_LIB_PAGES
 #include "lib/views.glsl"

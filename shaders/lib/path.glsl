@@ -7,8 +7,8 @@
 #include "lib/ray_origin.glsl"
 #include "lib/traversal.glsl"
 #ifdef PATH_ENDS_IN_KNOWN_LIGHT
-// Light that `s`, at `barycentrics` of `t`, reflects to anywhere, if that is known already: the including kernel's. Such
-// paths go no further.
+// The including kernel defines this: whether the light that `s`, at `barycentrics` of `t`, reflects to any viewer is
+// known already. Paths end there.
 bool known_light(WorldTriangle t, vec2 barycentrics, Surface s, Bsdf b, out vec3 reflected);
 #endif
 
@@ -30,7 +30,7 @@ PathSettings make_path_settings(uint path, float max_indirect) {
 struct Illumination {
     vec3 diffuse;
     vec3 specular;
-    vec3 punctual; // where each kind of light has its sample: diffuse, straight from punctual lights; not in `diffuse`
+    vec3 punctual; // if each kind of light has a sample: diffuse, directly from punctual lights; not in `diffuse`
 };
 const Illumination kNoIllumination = Illumination(vec3(0.0), vec3(0.0), vec3(0.0));
 
@@ -66,18 +66,18 @@ uint candidates_at(PathSettings settings, uint bounce) {
     return bounce < 2u ? settings.light_candidates : 1u;
 }
 
-// Of the kind `kind`, where each has its sample. Candidates for the environment would have the same place in it, and a
-// single lamp or sun leaves no choice.
+// Candidates of a sample of `kind`, if each kind has a sample. The environment has one, because its candidates would
+// have the same place in it; a single lamp or sun leaves no choice.
 uint candidates_of_kind(SceneInfo info, uint candidates, bool each_kind, uint kind) {
     bool is_one = kind == kEnvironmentKind || (kind == kPunctualKind && info.light_count == 1u);
     return each_kind && is_one ? 1u : candidates;
 }
 
-// A light sample chosen from `candidates` by what it would reflect if nothing blocked it, weighted against the BSDF's
-// sampling; its weight is light without the surface's reflection, zero if no candidate reflects.
-// Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice`, have
-// the same `u`, and `pick` decides between them: the sample stays well distributed if those are. To the power heuristic
-// they are so many samples.
+// A light sample chosen from `candidates` by the light that it would reflect if nothing blocked it, and weighted
+// against the BSDF's sampling. Its weight is light without the surface's reflection, zero if no candidate reflects.
+// Resampled importance sampling: J. Talbot, D. Cline, P. Egbert. EGSR 2005. Candidates are stratified over `choice`,
+// have the same `u`, and `pick` decides between them: the sample stays well distributed if those are. The power
+// heuristic counts as many samples as there are candidates.
 LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, uint candidates, float choice, vec2 u,
                            inout float pick, out BsdfValue value) {
     float span = share.to - share.from;
@@ -91,7 +91,7 @@ LightSample resample_light(SceneInfo info, Surface s, Bsdf b, LightShare share, 
                                          u);
         vec3 local = light.direction * b.world_from_local;
         BsdfValue reflected = eval_bsdf(b, local);
-        // The albedo's floor: filters spread the demodulated light of dark texels to bright ones.
+        // The albedo has a floor, because filters spread the demodulated light of dark texels to bright ones.
         float mass = luminance(light.weight * (reflected.diffuse * (b.diffuse_modulation + 0.1) + reflected.specular));
         if (!is_consistent(s, light.direction, local.z) || !(mass > 0.0)) {
             continue;
@@ -122,8 +122,8 @@ vec3 sample_direct(SceneInfo info, Surface s, Bsdf b, LightShare share, uint can
     if (luminance(light.weight) <= 0.0) {
         return vec3(0.0);
     }
-    // From the moved origin to the very point that was sampled: a ray along the old direction could reach a near emitter
-    // before its end.
+    // From the moved origin to the exact point that was sampled: a ray along the old direction could reach a near
+    // emitter before its end.
     vec3 origin = path_origin(s, light.direction);
     bool is_far = light.distance_m > 1e20;
     vec3 to_light = is_far ? light.direction : s.position + light.direction * light.distance_m - origin;
@@ -219,7 +219,7 @@ Illumination trace_path(SceneInfo info, PathSettings settings, Surface s, vec3 d
             throughput /= survival;
         }
         vec3 normal = s.normal;
-        uint alpha_seed = hash_combine(rng.state, bounce); // every segment decides anew what BLEND surfaces it meets
+        uint alpha_seed = hash_combine(rng.state, bounce); // BLEND surfaces are drawn anew for every segment
         Hit hit = trace_closest(path_origin(s, direction), direction, 0.0, 1e30, kTraceStochastic, alpha_seed);
         vec3 arriving;
         bool ends = hit.instance == kNoInstance;

@@ -53,9 +53,9 @@ uint spread_bits(uint value) { // of 16 bits, to the even ones
 }
 
 // One sequence for all pixels, shifted in each by a point of another sequence that follows a Z-order curve across the
-// image: successive samples of a pixel and those of neighbouring pixels both fill the unit square evenly, so that what is
-// averaged over frames or neighbours has less noise. After: A. Ahmed, P. Wonka. Screen-Space Blue-Noise Diffusion of Monte
-// Carlo Sampling Error via Hierarchical Ordering of Pixels. ACM TOG 39(6), 2020. Differs: the curve only shifts.
+// image. Successive samples of a pixel and those of neighbouring pixels both fill the unit square evenly, so that
+// averages over frames or neighbours have less noise. After: A. Ahmed, P. Wonka. Screen-Space Blue-Noise Diffusion of
+// Monte Carlo Sampling Error via Hierarchical Ordering of Pixels. ACM TOG 39(6), 2020. Differs: the curve only shifts.
 Sampler make_screen_sampler(uint seed, uint index, uvec2 pixel) {
     uint mixed = epoch_seed(seed, index);
     uint place = spread_bits(pixel.x) | (spread_bits(pixel.y) << 1);

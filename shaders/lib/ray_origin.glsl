@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rays that leave a surface begin.
+// Origins of rays that leave a surface.
 // Follows: C. Wächter, N. Binder. A Fast and Robust Method for Avoiding Self-Intersection. Ray Tracing Gems, 2019.
 #ifndef FIELDCAST_LIB_RAY_ORIGIN
 #define FIELDCAST_LIB_RAY_ORIGIN

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Specular light whose place in the image is that of what is reflected, not of the surface that reflects. The including
+// Specular light whose place in the image is that of the reflected object, not of the reflecting surface. The including
 // kernel has `params.settings` (ReprojectSettings) and binds set 1.
 #ifndef FIELDCAST_LIB_REFLECTION
 #define FIELDCAST_LIB_REFLECTION
@@ -9,15 +9,15 @@
 
 const float kMirrorRoughness = 0.08; // up to this, half of the lobe fits into a pixel of common sizes
 
-// How far the lobe has turned from a source to the viewer, as a share of 1: at 0 the surface's light looks the same from
-// both, at 1 only what lies in its reflection says what it looks like.
+// Turn of the lobe from a source to the viewer, 0 to 1. At 0 the surface's light looks the same from both; at 1 only
+// the reflected objects determine it.
 float lobe_turn(Surface s, vec3 view, CameraRecord source) {
     float turned = sqrt(2.0 * max(0.0, 1.0 - dot(view, normalize(source.origin - s.position))));
     return smoothstep(1.0 / 6.0, 0.5, turned / max(lobe_angle(s.roughness), 1e-4));
 }
 
-// Whether a surface's specular light deserves a look at what it reflects. Seen through a thin wall, what lies behind it has
-// no virtual image.
+// Whether a surface's specular light needs a ray to what it reflects. Objects seen through a thin wall have no virtual
+// image.
 bool is_glossy(Surface s, Bsdf b, vec3 view, CameraRecord source) {
     bool counts = luminance(b.specular_modulation) > 0.02 && luminance(s.transmission) == 0.0;
     return counts && s.roughness < kGlossyRoughness &&
@@ -36,10 +36,10 @@ float mean_curvature(WorldTriangle t, Surface s) {
     return dot(n0 + n1 + n2, s.normal) >= 0.0 ? sum / 3.0 : -sum / 3.0;
 }
 
-// Where the viewer sees the virtual image of what lies `distance_m` away along the mirror direction. The lobe of a rough
-// surface leans towards the normal, which brings its image nearer: S. Lagarde, C. de Rousiers. Moving Frostbite to
-// Physically Based Rendering. SIGGRAPH courses 2014 (dominant direction); curvature by the equation of thin mirrors,
-// 1/image = 1/object + 2 κ / cos. False: there is no image behind the surface.
+// Place where the viewer sees the virtual image of an object that lies `distance_m` away along the mirror direction.
+// The lobe of a rough surface leans towards the normal, which brings its image nearer: S. Lagarde, C. de Rousiers.
+// Moving Frostbite to Physically Based Rendering. SIGGRAPH courses 2014 (dominant direction); curvature by the equation
+// of thin mirrors, 1/image = 1/object + 2 κ / cos. False: there is no image behind the surface.
 bool virtual_image(Surface s, float curvature, vec3 direction, float distance_m, out vec3 position) {
     float facing = max(-dot(s.normal, direction), 0.05);
     float vergence = 1.0 / max(distance_m, 1e-6) + 2.0 * curvature / facing;
@@ -48,7 +48,7 @@ bool virtual_image(Surface s, float curvature, vec3 direction, float distance_m,
     return vergence > 0.0;
 }
 
-// Adds the specular light of one source pixel if it shows the reflecting surface, turned alike and as rough.
+// Adds the specular light of one source pixel if it shows the reflecting surface with a similar normal and roughness.
 void gather_reflection(CameraRecord source, uint page, ivec2 at, float weight, Target target, float roughness,
                        inout vec4 sum) {
     ivec2 size = ivec2(camera_size(source));

@@ -91,7 +91,8 @@ Target make_target(Surface s, uint instance, vec3 direction, float footprint_m, 
                   params.settings.tangential_footprints * footprint_m / facing);
 }
 
-// Illumination of a surface in all sources that show it; `found` false: none does, and how near it came.
+// Illumination of a surface in all sources that show it. If none does, `found` is false, and `reason` says which test
+// failed.
 struct Reused {
     vec3 diffuse;
     vec3 specular;
@@ -99,16 +100,16 @@ struct Reused {
     uint reason;
 };
 
-// How much of what a glossy surface sends to `view` it sends to a source: the lobe that holds 75 % of GGX has a half
-// angle of about 1.73 α. Never nothing, so that one source alone always counts.
+// Share of the light that a glossy surface sends to `view` which it also sends to a source: the lobe that holds 75 % of
+// GGX has a half angle of about 1.73 α. It is never 0, so that one source alone always counts.
 float specular_confidence(Surface s, vec3 view, CameraRecord source) {
     float angle_squared = 2.0 * max(0.0, 1.0 - dot(view, normalize(source.origin - s.position)));
     float lobe = 1.73 * s.roughness * s.roughness + 1e-3;
     return exp(-angle_squared / (2.0 * lobe * lobe)) + 1e-6;
 }
 
-// Light that `s`, seen along `direction` with pixels of `footprint_m`, reflects: layer `layer` of every source, blended by
-// the weight of the accepted pixels; specular light also by how alike source and target see the lobe.
+// Light that `s`, seen along `direction` with pixels of `footprint_m`, reflects: layer `layer` of every source, blended
+// by the weight of the accepted pixels. The weight of specular light contains specular_confidence() as well.
 Reused gather_sources(CameraBuffer cameras, uint layer, Surface s, uint instance, vec3 direction, float footprint_m,
                       float depth_m) {
     Reused sum = Reused(vec3(0.0), vec3(0.0), false, kDiscardFrustum);

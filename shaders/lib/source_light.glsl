@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that the source images already know, for rays that come from elsewhere. The including kernel has
+// Light that the source images already contain, for rays that come from elsewhere. The including kernel has
 // `params.settings` (ReprojectSettings) and binds set 1.
 #ifndef FIELDCAST_LIB_SOURCE_LIGHT
 #define FIELDCAST_LIB_SOURCE_LIGHT
 #include "lib/known_light.glsl"
 #include "lib/reprojection.glsl"
 
-// Light that `s`, seen from anywhere, reflects, from the sources' illumination of that surface; false: no source shows it,
-// or what they show depends on the viewer too much. Emission is not part of it.
+// Light that `s` reflects to any viewer, from the sources' illumination of that surface, without its emission. False if
+// no source shows it, or if its light depends on the viewer too much.
 bool light_in_source(CameraBuffer cameras, Surface s, uint instance, Bsdf b, out vec3 reflected) {
     reflected = vec3(0.0);
     if (!looks_alike_from_anywhere(s, b)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From (instance, primitive) to everything shading needs. The one place where surface attributes are computed, so
-// that visibility may come from rays, a rasteriser or reprojection.
+// Computes everything that shading needs from (instance, primitive). This is the only place where surface attributes
+// are computed, so that visibility may come from rays, a rasteriser or reprojection.
 #ifndef FIELDCAST_LIB_SURFACE
 #define FIELDCAST_LIB_SURFACE
 #include "lib/packing.glsl"
@@ -126,9 +126,9 @@ vec4 base_colour(MaterialRecord m, vec4 uv, vec4 vertex_colour, float lod_offset
     return colour;
 }
 
-// Interpolated and mapped normals may turn away from the viewer, or mirror him into the surface, which would be black.
-// Bends `normal` until the mirror direction just leaves `geometric` (A. Keller et al. The Iray Light Transport Simulation
-// and Rendering System. 2017, section on bent normals); others stay as they are.
+// Interpolated and mapped normals may turn away from the viewer, or have a mirror direction inside the surface, which
+// would be black. Bends `normal` until the mirror direction just leaves `geometric` (A. Keller et al. The Iray Light
+// Transport Simulation and Rendering System. 2017, section on bent normals); others stay as they are.
 vec3 bent_normal(vec3 normal, vec3 geometric, vec3 direction) {
     const float kMinCos = 1e-3; // of the mirror direction and `geometric`
     vec3 mirrored = reflect(direction, normal);
@@ -201,7 +201,8 @@ Surface make_surface(WorldTriangle t, vec2 barycentrics, vec3 direction, float c
     s.transmission = dielectric * transmission;
     reflectance *= reflectance;
     s.f0 = mix(vec3(reflectance), colour.rgb, s.metallic);
-    // Schlick's formula takes 1, also for ior = 1 where there is no interface. Below 2 % (water) nothing dielectric is left.
+    // Schlick's formula takes 1, also for ior = 1 where there is no interface. Below 2 % (water) f90 falls to 0 with
+    // the reflectance.
     s.f90 = mix(min(1.0, 50.0 * reflectance), 1.0, s.metallic);
     s.alpha = (m.flags & kMaterialAlphaMask) == kAlphaBlend ? colour.a : 1.0;
     s.emission = vec3(0.0);

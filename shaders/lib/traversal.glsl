@@ -28,7 +28,7 @@ const uint kTraceStochastic = 2u; // opaque, MASK texels that pass, BLEND with p
 
 layout(constant_id = 100) const bool kSceneHasAlpha = true; // kSpecialiseAlpha
 
-// What surfaces know about their alpha; lib/surface.glsl.
+// Alpha of surfaces, from lib/surface.glsl.
 bool surface_is_solid_at(uint instance, uint primitive, vec2 barycentrics); // MASK: the texel passes
 float surface_alpha(uint instance, uint primitive, vec2 barycentrics);      // BLEND: coverage
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Traversal of our own BVH (shared/bvh.h); included by lib/traversal.glsl only.
-// Shaped by software Vulkan, where lanes step together and every texel fetch and private array access is scalar code:
-// three fetches per node, at most one stack entry per node, leaves tested when their node is. An entry is a *group*:
-// what is left to visit of one node's children, nearest first.
+// Designed for software Vulkan, where lanes step together and every texel fetch and private array access is scalar
+// code. A node costs three fetches and at most one stack entry, and its leaves are tested together with it. An entry is
+// a *group*: the children of one node that are still to be visited, nearest first.
 //
 //   bits 0..23  index of the node's first inner child
 //   bits 24..29 slots of the remaining children, 2 bits each, next one lowest
@@ -17,13 +17,13 @@ layout(set = 0, binding = kBindTopLevel) uniform usamplerBuffer bvh_placed_level
 const uint kNoGroup = 0u;
 const uint kMissKey = 0xFFFFFFFFu;
 
-// What a ray looks for and what it has found.
+// The search of a ray, and its result so far.
 struct BvhQuery {
     float t_min;
     uint mode;
     uint seed;
     bool any;            // any solid surface ends the search; BLEND surfaces dim `transmittance`
-    Hit hit;             // hit.t: nothing beyond counts
+    Hit hit;             // hit.t: farther surfaces do not count
     float transmittance;
 };
 
@@ -35,7 +35,7 @@ struct BvhRay {
     uint first_instance; // of the level
 };
 
-// Where a traversal stands.
+// State of a traversal.
 struct BvhCursor {
     uint node;     // to be visited
     uint group;
@@ -175,7 +175,7 @@ void descend(inout BvhCursor at, uint first_child, uvec4 key) {
     }
 }
 
-// Goes to the next child of the group, or of the first group on the stack that is near enough. False: all was seen.
+// Goes to the next child of the group, or of the first group on the stack that is near enough. False if there is none.
 bool take_next(inout BvhCursor at, inout BvhRay ray, vec3 origin, vec3 direction, float t_max) {
     bool is_found = is_group(at.group) && at.group_t < t_max;
     while (!is_found && at.height > 0) {
@@ -193,7 +193,7 @@ bool take_next(inout BvhCursor at, inout BvhRay ray, vec3 origin, vec3 direction
     return is_found;
 }
 
-// Goes to the root of a placed level; what is left of the top level waits below a marker.
+// Goes to the root of a placed level; the rest of the top level waits on the stack below a marker.
 void enter_level(inout BvhCursor at, out BvhRay ray, vec3 origin, vec3 direction, uint placed) {
     if (is_group(at.group)) {
         push_group(at, at.group, at.group_t);

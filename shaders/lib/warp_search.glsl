@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest surface of an image that a pixel of another view sees. All points that the pixel may see lie on a straight
-// line in the image, at distances proportional to their inverse depth: the line is followed from the near end, one texel
-// of its longer axis at a time, until the surface is reached.
+// The nearest surface of an image that a pixel of another view sees. All points that the pixel may see lie on a
+// straight line in the image, at distances proportional to their inverse depth. The search follows the line from the
+// near end, one texel of its longer axis at a time, until it reaches the surface.
 // Follows: H. Bowles et al. Iterative Image Warping. Eurographics 2012, section 3, for the problem.
 // Differs: no fixed-point iteration but a search of the whole line, over bounds of blocks, which misses nothing.
 // The including kernel binds set 0.
@@ -29,7 +29,7 @@ struct WarpLine {
     float side;     // 1: near points have larger coordinates, -1: smaller
 };
 
-// What the image shows on the line.
+// Sample of the image on the line.
 struct WarpSample {
     float inverse_depth; // negative: nothing
     float gap;           // pixels by which the surface lies in front of the ray there
@@ -80,7 +80,7 @@ WarpSample sample_line(WarpImage image, WarpLine line, int k) {
     return WarpSample(depth, gap, nearest, texel.y);
 }
 
-// Coordinates up to which a block can be passed over from `k` on, or `k`: the surface may be met in it.
+// Coordinate up to which the block at `k` can be passed over; `k` itself if the ray may meet the surface in the block.
 int end_of_empty_block(WarpImage image, WarpLine line, int k, int step, bool is_coarse) {
     int side = int(is_coarse ? kWarpCoarseBlock : kWarpBlock);
     vec2 p = line_position(line, float(k) + 0.5);
@@ -103,8 +103,8 @@ int end_of_empty_block(WarpImage image, WarpLine line, int k, int step, bool is_
     return is_empty ? end : k;
 }
 
-// Where the ray meets the surface between two neighbouring samples, the first one nearer: between linked samples, or
-// within half a texel of a sample at the edge of its surface.
+// Meeting point of the ray and the surface between two neighbouring samples, the first one nearer: between linked
+// samples, or within half a texel of a sample at the edge of its surface.
 WarpHit meet(WarpLine line, WarpSample a, int k_a, WarpSample b, int k_b) {
     bool has_a = a.inverse_depth >= 0.0;
     bool has_b = b.inverse_depth >= 0.0;
@@ -122,7 +122,7 @@ WarpHit meet(WarpLine line, WarpSample a, int k_a, WarpSample b, int k_b) {
     return WarpHit(meets_a || meets_b, true, line_position(line, along), is_a ? a.inverse_depth : b.inverse_depth);
 }
 
-// Surfaces farther than inverse depth `least` are of no interest.
+// Ignores surfaces farther than inverse depth `least`.
 WarpHit search_image(WarpImage image, WarpPath path, vec2 pixel, float least) {
     if (image.most < least) {
         return WarpHit(false, false, vec2(0.0), 0.0);

@@ -18,7 +18,7 @@ SHARED_BEGIN
 
 const uint kBvhWidth = 4u;
 const uint kBvhMaxLeafSize = 4u;
-const uint kBvhChildInner = 5u;     // kind of a child; smaller kinds are leaves with so many triangles (0: unused)
+const uint kBvhChildInner = 5u;     // kind of a child; smaller kinds are leaves with as many triangles (0: unused)
 const uint kBvhKindBits = 3u;       // per child, from kBvhKindShift on
 const uint kBvhKindShift = 18u;
 const uint kBvhExponentBits = 6u;   // per axis, from bit 0 on

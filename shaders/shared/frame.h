@@ -19,14 +19,14 @@ struct CameraRecord {
 };
 SHARED_BUFFER(CameraBuffer, CameraRecord);
 
-// What a pixel sees: the first surface that is not BLEND.
+// The visible surface of a pixel: the first one that is not BLEND.
 struct Visibility {
     uint instance;    // kNoInstance: nothing
     uint primitive;
 };
 SHARED_BUFFER(VisibilityBuffer, Visibility);
 
-// visibility.comp: what every pixel of `view_count` cameras of equal size sees.
+// visibility.comp: the visible surface of every pixel of `view_count` cameras of equal size.
 struct VisibilityParams {
     CameraBuffer cameras;
     VisibilityBuffer visibility; // out: view_count × width × height
@@ -44,7 +44,7 @@ struct DrawParams {
     VisibilityBuffer triangles; // by number
 };
 
-// name_triangles.comp: from the numbers of triangles that were drawn to what pixels see.
+// name_triangles.comp: converts the numbers of drawn triangles into visible surfaces of pixels.
 struct NameTrianglesParams {
     UintBuffer numbers;          // view_count × view_stride()
     VisibilityBuffer triangles;
@@ -63,9 +63,9 @@ struct FindLayersParams {
     uint height;
 };
 
-// Sources have pages (core/lightfield/source_frame.h): page layer · source_count + source. Layer 0 is what pixels see
-// (Visibility), layers 1 and 2 are the BLEND surfaces in front of that, nearest first; only scenes with BLEND surfaces
-// have them. Arrays over the sources hold one page after the other.
+// Sources have pages (core/lightfield/source_frame.h): page layer · source_count + source. Layer 0 holds the visible
+// surfaces (Visibility), layers 1 and 2 the BLEND surfaces in front of them, nearest first; only scenes with BLEND
+// surfaces have them. Arrays over the sources hold one page after the other.
 const uint kMaxLayers = 2;
 const uint kMaxSources = 8; // as core/lightfield/source_frame.h
 
@@ -78,7 +78,8 @@ const uint kFlagFollowLobes = 64;
 const uint kFlagKeepLight = 128;
 const uint kFlagPunctualApart = 256;
 
-// How paths are traced, in one word: bounces at most, then candidates of a light sample, then kPath….
+// Settings of path tracing, in one word: the largest number of bounces, then the candidates of a light sample, then
+// kPath….
 const uint kPathCandidatesShift = 16;
 const uint kPathNextEventEstimation = 1u << 24;
 const uint kPathEachLightKind = 1u << 25;
@@ -94,7 +95,7 @@ struct TraceSourceParams {
     UintBuffer tiles;            // to run on; pixels without a surface are 0 or left alone
     Vec4Buffer diffuse;          // out: rgb demodulated illumination, a 0
     Vec4Buffer specular;         // out
-    Vec4Buffer punctual; // out, with kPathPunctualApart: the part of diffuse that comes straight from such lights
+    Vec4Buffer punctual; // out, with kPathPunctualApart: the part of diffuse that comes directly from such lights
     UintBuffer invalid_samples;  // counter
     Uvec4Buffer previous_geometry; // with kPathEndsInHistory: GeometryTexel of the frame before
     UintBuffer previous_diffuse;   // … and its wire planes
@@ -155,7 +156,7 @@ struct MergeLightParams {
     uint source_count;
 };
 
-// What filters read per pixel of the source, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness |
+// Surface of a source's pixel for filters, as one RGBA32UI texel: view depth (bits), packed normal, id, roughness |
 // metallic.
 struct GeometryTexel {
     float depth;
@@ -164,7 +165,7 @@ struct GeometryTexel {
     uint material;
 };
 
-// Which pixels of the frame before entered a pixel's history.
+// Pixels of the previous frame that entered a pixel's history.
 struct HistoryTaps {
     vec2 position; // image position, pixels
     uint accepted; // bits 0 to 3: the bilinear taps, x first; 4 to 12: the 3×3 pixels around, row by row, with weight 1
@@ -272,7 +273,7 @@ struct InterleaveParams {
     uint pixel_count;         // of all pages
 };
 
-// What one target view needs besides its camera.
+// Data of one target view besides its camera.
 struct ViewRecord {
     uint seed;                // hash of frame seed and lattice position
     uint is_corner;           // of the hole cascade
@@ -285,7 +286,7 @@ const uint kCounterHoles = 0;
 const uint kCounterLayers = 4;          // pixels behind BLEND surfaces
 const uint kCounterFirstHoles = 8;      // holes to be traced first: of corner views, or all of them
 const uint kCounterInnerHoles = 12;     // holes that corner views may fill
-const uint kCounterRestHoles = 16;      // those that they did not
+const uint kCounterRestHoles = 16;      // those that the corner views did not fill
 const uint kCounterInvalidSamples = 20;
 const uint kCounterLayerPaths = 21;     // BLEND surfaces that had to be path traced
 const uint kCounterRememberedHoles = 22; // filled from the frame before
@@ -305,7 +306,8 @@ struct ReprojectSettings {
     uint source_count;
 };
 
-// Views whose light is averaged or filtered before their own materials come in: each is a page, without padding.
+// Light of views that is averaged or filtered before it meets their own materials. Each view is a page, without
+// padding.
 struct ViewLight {
     Uvec4Buffer geometry; // GeometryTexel
     Vec4Buffer diffuse;   // rgb

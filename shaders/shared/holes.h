@@ -12,7 +12,7 @@ const uint kHoleTileWidth = 8;
 const uint kHoleTileHeight = 4;
 const uint kHoleBlock = 64; // words that one invocation counts
 
-// What is known of the holes of one frame. Arrays are in the order of the map's bits.
+// Data of the holes of one frame. Arrays are in the order of the map's bits.
 struct HoleFrame {
     CameraBuffer cameras; // kMaxSources, then the views
     UintBuffer words;     // the map
@@ -23,7 +23,7 @@ struct HoleFrame {
 };
 SHARED_BUFFER(HoleFrameBuffer, HoleFrame);
 
-// count_holes.comp, scan_holes.comp, list_holes.comp: from the map's words to the arrays' order.
+// count_holes.comp, scan_holes.comp, list_holes.comp: they derive the order of the arrays from the map's words.
 struct HoleMapParams {
     UintBuffer words;
     UintBuffer first;  // out
@@ -56,7 +56,7 @@ struct HoleParams {
     uint width;
     uint height;
     uint hole_count;
-    uint list;                   // kCounter… of the list to be worked on
+    uint list;                   // kCounter… of the list to process
     uint stages;                 // kHoles…
     uint noise_frame;
     uint samples_per_pixel;

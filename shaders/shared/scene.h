@@ -32,10 +32,10 @@ const uint kTextureArrays = 8;  // size classes × {sRGB, linear}; unused ones h
 // Specialisation constants of kernels that look at surfaces; those of the traversal are in shared/bvh.h.
 const uint kSpecialiseTextureArrays = 101; // bit k: array k is used by the scene
 const uint kSpecialiseBlend = 103;         // bool: some material is BLEND
-const uint kSpecialiseMask = 104;          // bool: what is drawn has MASK materials
+const uint kSpecialiseMask = 104;          // bool: the drawn triangles have MASK materials
 
-// Of smoother surfaces, light depends on the viewer within a grid of views: 75 % of what GGX of this roughness reflects
-// is within 15.5°, and views a sixth of that apart see the same.
+// Light of smoother surfaces depends on the viewer within a grid of views. At this roughness, 75 % of the light that
+// GGX reflects is within 15.5°, and views a sixth of that apart see the same.
 const float kGlossyRoughness = 0.4f;
 
 const uint kNoIndex = 0xFFFFFFFFu;

@@ -25,11 +25,11 @@ const uint kLinkBelow = 2u << 24;
 const uint kLinkBelowRight = 4u << 24;
 const uint kLinkBelowLeft = 8u << 24;
 
-// Blocks know the least and most inverse depth in them and one texel around them.
+// Blocks hold the least and most inverse depth of their texels and of one texel around them.
 const uint kWarpBlock = 8;        // texels on a side
 const uint kWarpCoarseBlock = 32;
 
-// Where an image shows what target pixel x sees at inverse depth w: at scale · x + offset + w · parallax.
+// Place in an image of the point that target pixel x sees at inverse depth w: scale · x + offset + w · parallax.
 struct WarpPath {
     vec2 offset;   // pixels of the image
     vec2 parallax; // pixels · metres
@@ -57,7 +57,7 @@ struct WarpLinkParams {
     float unit;
 };
 
-// warp_bounds.comp: of blocks, then of coarse blocks.
+// warp_bounds.comp: computes the bounds of blocks, then those of coarse blocks.
 struct WarpBoundsParams {
     WarpImageBuffer images;
     Uvec2Buffer texels;
@@ -66,7 +66,7 @@ struct WarpBoundsParams {
     uint is_coarse;
 };
 
-// What is known of a pixel of a view: its colour, and in the high byte one of these.
+// State of a view's pixel, in the high byte of its word; the other bytes hold its colour.
 const uint kWarpFromSource = 0;
 const uint kWarpFromResidual = 1u << 24;
 const uint kWarpHole = 2u << 24;
@@ -77,7 +77,7 @@ const uint kWarpCountOutside = 1;  // holes that lie outside the source
 const uint kWarpCountHidden = 2;   // other holes
 const uint kWarpCounters = 4;
 
-// warp_views.comp: searches every pixel of every view in the images. warp_fill.comp: extends what is behind into the
+// warp_views.comp: searches every pixel of every view in the images. warp_fill.comp: extends the background into the
 // holes and packs the views. Both read set 0: kWarp….
 struct WarpViewsParams {
     WarpImageBuffer images;

@@ -40,5 +40,12 @@ TEST(Csv, SaysWhichFileCannotBeWritten) {
     }
 }
 
+TEST(Csv, RowsBeginWithWhatAllShareAndTheirOwnValuesWin) {
+    const auto rows = csv_rows({{"scene", "atelier"}, {"ms", 0}}, {{{"ms", 1}}, {{"ms", 2}, {"bytes", 3}}});
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].dump(), R"({"scene":"atelier","ms":1})");
+    EXPECT_EQ(rows[1].dump(), R"({"scene":"atelier","ms":2,"bytes":3})");
+}
+
 } // namespace
 } // namespace fieldcast::bench

@@ -152,7 +152,7 @@ TEST_F(SessionTest, AnEpochThatNobodyAskedForEndsTheStream) {
     });
     const auto ended = next<Ended>();
     ASSERT_TRUE(ended);
-    EXPECT_THAT(ended->error.what(), HasSubstr("nobody asked for"));
+    EXPECT_THAT(ended->error.what(), HasSubstr("without a matching request"));
 }
 
 /// A server that grants two columns, then changes to `cols` by itself.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "client/net/session.h"
+#include "client/net/client_session.h"
 #include "tests/client/fake_server.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ protected:
     WorkerPool pool_{1};
     std::optional<FakeServer> server_;
     std::optional<client::net::Connection> connection_;
-    std::optional<client::net::Session> session_;
+    std::optional<client::net::ClientSession> session_;
 };
 
 } // namespace fieldcast::test

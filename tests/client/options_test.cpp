@@ -161,9 +161,11 @@ TEST(Options, ChangesBuildOnEachOther) {
 
 TEST(Options, ChangesThatCannotBeReadAreNamed) {
     for (const auto& [text, words] :
-         {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "says when"), std::pair("3s:grid=2", "grid=2: write"),
-          std::pair("3s:colour=red", "keys are anchor"), std::pair("3s:quality=101", "quality=101"),
-          std::pair("-1s:grid=2x2", "says when"), std::pair("3s:max-fps=0.004", "max-fps=0.004: write 0, or a number"),
+         {std::pair("3s", "WHEN:KEY=VALUE"), std::pair("3x:grid=2x2", "is not a time"), std::pair("3s:grid=2",
+                    "grid=2: write"),
+          std::pair("3s:colour=red", "one of the keys anchor"), std::pair("3s:quality=101", "quality=101"),
+          std::pair("-1s:grid=2x2", "is not a time"), std::pair("3s:max-fps=0.004",
+                    "max-fps=0.004: write 0, or a number"),
           std::pair("3s:max-fps=nan", "max-fps=nan: write 0, or a number")}) {
         const Invocation invocation = read({"--change", text});
         EXPECT_FALSE(invocation.options) << text;
@@ -195,7 +197,7 @@ TEST(Options, AdaptationIsOffUnlessAskedFor) {
     EXPECT_EQ(request.min_cols, 1U);
     EXPECT_EQ(request.max_queue_delay_ms, 250U);
     EXPECT_THAT(read({"--adapt", "fps=0.05"}).text, HasSubstr("fps=0.05: write 0, or a number"));
-    EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("keys are delay"));
+    EXPECT_THAT(read({"--adapt", "speed=3"}).text, HasSubstr("one of the keys delay"));
 }
 
 } // namespace

@@ -61,7 +61,7 @@ TEST_F(SessionTest, TellsWhenSomethingHasComeAndWhenItEnds) {
         return lock.wait_until(changed, std::chrono::steady_clock::now() + 60s,
                                [&](int seen) { return seen >= count; });
     };
-    Session::Options options;
+    ClientSession::Options options;
     options.decoding = wire::Decoding::kChecksum;
     options.reading.on_change = [&] {
         ++*told.lock();
@@ -90,7 +90,7 @@ TEST_F(SessionTest, ASlowReaderTakesItsTime) {
         call.read_rest();
     });
     constexpr double kBytesPerSecond = 2000.0;
-    Session::Options options;
+    ClientSession::Options options;
     options.reading = {.on_change = {}, .max_waiting_bytes = 1, .max_bytes_per_second = kBytesPerSecond};
     session_.emplace(*connection_, small_request(), pool_, options);
     const auto begin = std::chrono::steady_clock::now();

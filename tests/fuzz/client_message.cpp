@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An input is a row of steps: a byte that says what happens and how much time passes, and for messages a piece. What
 // the session sends goes to a client's assembler, which must accept all of it.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/fuzz/received_chunks.h"
 #include "tests/server/synthetic.h"
 
@@ -86,10 +86,8 @@ private:
     std::uint64_t frame_id_ = 0;
     WorkerPool pool_{1};
     std::shared_ptr<feed::Feed> feed_ = std::make_shared<feed::Feed>(channel());
-    session::Session session_{{feed_},
-                              session::Limits{},
-                              [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); },
-                              now_};
+    session::ServerSession session_{
+        {feed_}, session::Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
     ReceivedChunks client_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A --config file, for flags of each kind that the server has.
-#include "server/ops/config_file.h"
+#include "server/command_line/config_file.h"
 
 #include "core/base/error.h"
 #include "core/base/toml_file.h"
@@ -39,12 +39,12 @@ void parse(const std::vector<std::string>& arguments) {
     } catch (const CLI::Error&) {
         return;
     }
-    const std::string text = ops::config_text(app);
+    const std::string text = command_line::config_text(app);
     const auto file = scratch_file("again.toml", std::as_bytes(std::span(text)));
     CLI::App other;
     Values unset;
     add_flags(other, unset);
-    FC_ASSERT(ops::read_config_file(file, other).problems.empty(), "what --print-config writes can be read");
+    FC_ASSERT(command_line::read_config_file(file, other).problems.empty(), "what --print-config writes can be read");
 }
 
 } // namespace
@@ -54,7 +54,7 @@ void config(Bytes input) {
     CLI::App app;
     Values values;
     add_flags(app, values);
-    const ops::FileArguments read = ops::read_config_file(file, app);
+    const command_line::FileArguments read = command_line::read_config_file(file, app);
     for (const std::string& problem : read.problems) {
         FC_ASSERT(problem.starts_with(file.string()), "a problem names its file");
     }

@@ -3,7 +3,7 @@
 // the others in corpus/ were written by hand or found by libFuzzer.
 #include "core/scene/bundle.h"
 #include "server/recording/record.h"
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/fuzz/input.h"
 #include "tests/scene/gltf_builder.h"
 #include "tests/server/synthetic.h"
@@ -60,8 +60,8 @@ public:
     }
 
     Record run(const v1::Configure& wanted) {
-        session::Session session({feed_}, {}, [&](const feed::FramePtr& frame) { session_->on_frame(frame, now_); },
-                                 now_);
+        session::ServerSession session(
+            {feed_}, {}, [&](const feed::FramePtr& frame) { session_->on_frame(frame, now_); }, now_);
         session_ = &session;
         record_.messages = wanted.modes(0) == v1::DELIVERY_MODE_SCENE ? '\1' : '\0';
         v1::ClientMessage message;
@@ -102,7 +102,7 @@ private:
     std::shared_ptr<feed::Feed> feed_;
     WorkerPool pool_{1};
     session::TimePoint now_{1h};
-    session::Session* session_ = nullptr;
+    session::ServerSession* session_ = nullptr;
     Record record_;
 };
 

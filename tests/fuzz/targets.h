@@ -22,7 +22,7 @@ const Target* find_target(std::string_view name); ///< null: there is none
 void bundle(Bytes input);         ///< core/scene/bundle: what a server sends as a scene
 void cache_entry(Bytes input);    ///< client/play/cache_entry: a file that other programs may have changed
 void client_message(Bytes input); ///< server/session: what clients send
-void config(Bytes input);         ///< server/ops/config_file
+void config(Bytes input);         ///< server/command_line/config_file
 void environment(Bytes input);    ///< core/scene/environment: .hdr and .exr
 void frame(Bytes input);          ///< core/wire: chunks of frames, in any order
 void gltf(Bytes input);           ///< core/scene/gltf_loader

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/gpu/acceleration_structure.h"
+#include "core/gpu/command_recorder.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/trace_triangle.spv.h"
 
@@ -53,7 +54,7 @@ protected:
         const Kernel kernel(device(), {"trace_triangle", trace_triangle_spv}, {{&layout}, sizeof(TracePush)});
         const auto input = make_buffer<glm::vec4>(device(), origins);
         const Buffer hits(device(), origins.size() * sizeof(glm::vec4));
-        Recorder recorder(device());
+        CommandRecorder recorder(device());
         recorder.dispatch(kernel, {&set}, TracePush{input.address(), hits.address(), accept ? 1U : 0U},
                           {static_cast<std::uint32_t>(origins.size())});
         recorder.submit();

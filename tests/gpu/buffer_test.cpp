@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "tests/gpu/fetch_texels.spv.h"
 #include "tests/gpu/gpu_test.h"
 
@@ -47,9 +47,38 @@ TEST_F(BufferTest, RefusesToReadOrWritePastTheEnd) {
 }
 
 TEST_F(BufferTest, LargeTransfersGoInPieces) {
-    const auto values = counting((65U << 20U) / 4); // one MiB more than a staging buffer
-    const auto buffer = make_buffer<std::uint32_t>(device(), values);
-    EXPECT_EQ(read_buffer_as<std::uint32_t>(device(), buffer, values.size()), values);
+    const auto values = counting((33U << 20U) / 4); // one MiB more than two staging buffers
+    const auto buffer = make_buffer<std::uint32_t>(unmapped_device(), values);
+    EXPECT_EQ(read_buffer_as<std::uint32_t>(unmapped_device(), buffer, values.size()), values);
+}
+
+TEST_F(BufferTest, StagingBuffersAreUsedAgain) {
+    const Buffer buffer = make_zero_buffer(unmapped_device(), 4000);
+    for (const std::uint32_t count : {10U, 1000U, 1U, 0U, 100U}) {
+        const auto values = counting(count);
+        write_buffer(unmapped_device(), buffer, std::as_bytes(std::span(values)));
+        EXPECT_EQ(read_buffer_as<std::uint32_t>(unmapped_device(), buffer, count), values);
+    }
+}
+
+TEST_F(BufferTest, MakesRoomOnlyWhereItLacks) {
+    Buffer buffer;
+    make_room(device(), buffer, 4000);
+    const VkBuffer handle = buffer.handle();
+    for (const std::uint64_t size_bytes : {4000ULL, 100ULL, 0ULL}) {
+        make_room(device(), buffer, size_bytes);
+        EXPECT_EQ(buffer.handle(), handle);
+        EXPECT_EQ(buffer.size_bytes(), 4000U);
+    }
+    make_room(device(), buffer, 4001);
+    EXPECT_EQ(buffer.size_bytes(), 4001U);
+}
+
+TEST_F(BufferTest, DeviceMemoryCanBeLeftUnmapped) {
+    EXPECT_EQ(Buffer(unmapped_device(), 64).mapped(), nullptr);
+    EXPECT_FALSE(Buffer(unmapped_device(), 64).is_cached());
+    EXPECT_NE(Buffer(unmapped_device(), 64, Memory::kUpload).mapped(), nullptr);
+    EXPECT_NE(Buffer(unmapped_device(), 64, Memory::kReadback).mapped(), nullptr);
 }
 
 TEST_F(BufferTest, IsEmptyAfterMove) {
@@ -88,7 +117,7 @@ TEST_F(BufferTest, TexelViewsAreFetched) {
     const Kernel kernel(device(), {"fetch_texels", fetch_texels_spv}, {{&layout}, 8});
     const Buffer sums(device(), 64);
 
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     recorder.dispatch(kernel, {&set}, sums.address(), {});
     recorder.submit();
     // Thread i adds the four integers of texel i and the two floats of texel i.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "shaders/shared/types.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/scale.spv.h"
@@ -28,7 +28,7 @@ std::vector<glm::vec3> scaled(const Device& device, std::span<const Specialisati
     const Buffer to(device, values.size_bytes());
     const Kernel kernel(device, {"scale", scale_spv}, {{}, sizeof(ScalePush)}, all);
     const auto count = static_cast<std::uint32_t>(values.size());
-    Recorder recorder(device);
+    CommandRecorder recorder(device);
     recorder.dispatch(kernel, {}, ScalePush{from.address(), to.address(), count}, {groups_for(count, kGroupSize)});
     recorder.submit();
     return read_buffer_as<glm::vec3>(device, to, values.size());
@@ -51,7 +51,7 @@ TEST_F(KernelTest, TakesSpecialisationConstants) {
 TEST_F(KernelTest, RefusesPushConstantsOfAnotherSize) {
     const std::vector<Specialisation> constants = {{0, kGroupSize}};
     const Kernel kernel(device(), {"scale", scale_spv}, {{}, sizeof(ScalePush)}, constants);
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     EXPECT_THROW(recorder.dispatch(kernel, {}, std::uint64_t{0}, {}), std::logic_error);
 }
 

@@ -52,7 +52,7 @@ protected:
     }
 
     /// Numbers of the pixels of a layer, row by row.
-    std::vector<std::vector<std::uint32_t>> numbers(Recorder& recorder) {
+    std::vector<std::vector<std::uint32_t>> numbers(CommandRecorder& recorder) {
         const Buffer copy(device(), 16 + 2 * 80);
         target_.copy_to(recorder, 0, copy, 16, 80, 2);
         recorder.submit();
@@ -60,7 +60,7 @@ protected:
                 read_buffer_as<std::uint32_t>(device(), copy, 16, 96)};
     }
 
-    std::vector<std::uint8_t> marks(Recorder& recorder) {
+    std::vector<std::uint8_t> marks(CommandRecorder& recorder) {
         const Buffer copy(device(), 32);
         target_.copy_to(recorder, 1, copy, 0, 16, 1);
         recorder.submit();
@@ -74,7 +74,7 @@ protected:
     };
 
     /// Everything that a layer shows.
-    void draw(Recorder& recorder, const std::vector<Draw>& draws, std::uint32_t layer = 0) {
+    void draw(CommandRecorder& recorder, const std::vector<Draw>& draws, std::uint32_t layer = 0) {
         RasterPass pass(recorder, target_, layer);
         pass.use_triangles(vertices_, indices_);
         for (const Draw& one : draws) {
@@ -93,7 +93,7 @@ protected:
 
 TEST_F(RasterTest, WhatIsNearerStaysFromBothSidesAndInAnyOrder) {
     const RasterPipeline pipeline(device(), kCode, description());
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     target_.begin(recorder);
     draw(recorder, {{pipeline, {0, 1, 2}}});
     draw(recorder, {{pipeline, {2, 1, 0}}}, 1);
@@ -106,7 +106,7 @@ TEST_F(RasterTest, WhatIsNearerStaysFromBothSidesAndInAnyOrder) {
 
 TEST_F(RasterTest, WhatIsNotDrawnKeepsAllOnes) {
     const RasterPipeline pipeline(device(), kCode, description());
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     target_.begin(recorder);
     draw(recorder, {{pipeline, {0}, {.moved = {1, 0}, .added = 0}}});
     const std::vector<std::uint32_t> seen = numbers(recorder)[0];
@@ -117,7 +117,7 @@ TEST_F(RasterTest, WhatIsNotDrawnKeepsAllOnes) {
 TEST_F(RasterTest, PushConstantsAndSpecialisationsReachBothShaders) {
     const std::vector<Specialisation> factor = {{7, 5}};
     const RasterPipeline pipeline(device(), kCode, description(), factor);
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     target_.begin(recorder);
     draw(recorder, {{pipeline, {1}, {.moved = {0, 0}, .added = 2}}});
     EXPECT_THAT(numbers(recorder)[0], testing::Each(102U));
@@ -132,13 +132,13 @@ TEST_F(RasterTest, APipelineWritesOnlyItsImagesAndMayLeaveDepthAlone) {
     numbering.written = 1;
     const RasterPipeline number(device(), kCode, numbering);
     const std::vector<Draw> draws = {{mark, {2}}, {number, {1}}}; // the nearest first, but it leaves no depth
-    Recorder recorder(device());
+    CommandRecorder recorder(device());
     target_.begin(recorder);
     draw(recorder, draws);
     const std::vector<std::uint8_t> seen = marks(recorder);
     EXPECT_EQ(seen[0], 3U);
     EXPECT_EQ(seen[7], 255U);
-    Recorder again(device());
+    CommandRecorder again(device());
     target_.begin(again);
     draw(again, draws);
     EXPECT_THAT(numbers(again)[0], testing::Each(20U));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "tests/gpu/gpu_test.h"
 #include "tests/gpu/sample_texture.spv.h"
 
@@ -45,7 +45,7 @@ std::vector<float> sample_red(const Device& device, const Texture& texture, cons
     const auto input = make_buffer<glm::vec4>(device, places);
     const Buffer output(device, places.size() * sizeof(glm::vec4));
     const std::array<std::uint64_t, 2> push = {input.address(), output.address()};
-    Recorder recorder(device);
+    CommandRecorder recorder(device);
     recorder.dispatch(kernel, {&set}, push, {static_cast<std::uint32_t>(places.size())});
     recorder.submit();
     std::vector<float> red;

@@ -4,6 +4,8 @@
 #include "core/scene/bvh.h"
 #include "tests/gpu/traversal_reference.h"
 
+#include <cstring>
+
 namespace fieldcast::scene {
 namespace {
 

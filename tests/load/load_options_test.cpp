@@ -44,7 +44,7 @@ TEST(LoadOptions, FlagsWinOverTheFile) {
     EXPECT_TRUE(scenario.access.uses_tls);
     EXPECT_EQ(scenario.groups.at(0).count, 2U);
     EXPECT_THAT(read({"--scenario", file.c_str(), "--clients", "3"}).text,
-                HasSubstr("--clients: the groups of --scenario"));
+                HasSubstr("--clients: not allowed with --scenario"));
 }
 
 TEST(LoadOptions, NamesTheFlagThatIsWrong) {
@@ -55,8 +55,8 @@ TEST(LoadOptions, NamesTheFlagThatIsWrong) {
     EXPECT_THAT(read({"--duration", "soon"}).text, HasSubstr("--duration soon: write a number"));
     EXPECT_THAT(read({"--require", "due_p98_ms=3"}).text, HasSubstr("--require due_p98_ms=3: no such threshold"));
     EXPECT_THAT(read({"--require", "due_p99_ms"}).text, HasSubstr("write a number"));
-    EXPECT_THAT(read({"--metrics", "http://example.org:80/metrics"}).text, HasSubstr("would have to be this machine"));
-    EXPECT_THAT(read({"--tls-cert", "a.pem"}).text, HasSubstr("belong together"));
+    EXPECT_THAT(read({"--metrics", "http://example.org:80/metrics"}).text, HasSubstr("must be this machine"));
+    EXPECT_THAT(read({"--tls-cert", "a.pem"}).text, HasSubstr("must be given together"));
     EXPECT_EQ(read({"--nonsense"}).exit_code, 2);
 }
 

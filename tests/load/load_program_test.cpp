@@ -65,7 +65,7 @@ TEST_F(LoadProgram, ExitCodesTellWhatHappened) {
     EXPECT_EQ(run({"--duration", "0.5", "--grid", "1x2", "--require", "least_fps=1000", server_.address()}), 3);
     EXPECT_THAT(text_, HasSubstr("MISSED clients: least_fps"));
     EXPECT_EQ(run({"--duration", "0.5", "--grid", "1x2", "127.0.0.1:1"}), 1);
-    EXPECT_THAT(text_, HasSubstr("nobody got a frame"));
+    EXPECT_THAT(text_, HasSubstr("no client received a frame"));
     EXPECT_EQ(run({"--duration", "-1", server_.address()}), 2);
     EXPECT_EQ(run({"--scenario", folder_ / "none.toml", server_.address()}), 2);
     EXPECT_THAT(text_, HasSubstr("none.toml: cannot be read"));

@@ -118,7 +118,7 @@ TEST_F(ScenarioTest, NamesFileLineAndKeyOfEveryMistake) {
                             HasSubstr(at(3, "count: write a number from 1 to")),
                             HasSubstr(at(4, "grid: write ROWSxCOLS")), HasSubstr(at(5, "colour: no such setting")),
                             HasSubstr(at(7, "due_p98_ms: no such threshold")),
-                            HasSubstr(at(8, "limits: no such table")), HasSubstr(at(10, "other: no such table"))));
+                            HasSubstr(at(8, "limits: unknown table")), HasSubstr(at(10, "other: unknown table"))));
 }
 
 TEST_F(ScenarioTest, RefusesValuesThatMakeNoSense) {
@@ -138,7 +138,7 @@ TEST_F(ScenarioTest, RefusesValuesThatMakeNoSense) {
 }
 
 TEST_F(ScenarioTest, LooksAtTheWhole) {
-    EXPECT_THAT(problems("ramp = 1\n"), HasSubstr("no [[group]] of clients"));
+    EXPECT_THAT(problems("ramp = 1\n"), HasSubstr("at least one [[group]] is required"));
     EXPECT_THAT(problems("[[group]]\nname = \"a\"\n[[group]]\nname = \"a\"\n"), HasSubstr("group name 'a'"));
     EXPECT_THAT(problems("[[group]]\ncount = 20000\n[[group]]\ncount = 1\n"), HasSubstr("more than 20000 clients"));
     EXPECT_THAT(problems("metrics = \"https://127.0.0.1:1/\"\n[[group]]\n"),

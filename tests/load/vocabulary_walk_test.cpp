@@ -6,6 +6,7 @@
 #include "server/recording/replay.h"
 #include "server/service/grpc_server.h"
 #include "server/session/ladder.h"
+#include "server/session/negotiate.h"
 #include "tests/fixtures/test_folder.h"
 #include "tests/server/synthetic_recording.h"
 

@@ -182,7 +182,7 @@ def decode(strip, pixel_format, width, rows, codec, reference=None):
     if coding != ZSTD_FILTERED:
         require((predictor, layout, flags) == (0, 0, 0) or coding == H264, "strip header: bytes 3 to 5")
     if coding == REPEAT or (coding == ZSTD_FILTERED and predictor == REFERENCE):
-        require(reference is not None, "strip: refers to another frame, its frame does not")
+        require(reference is not None, "strip: refers to another frame, but its frame has no reference")
     if coding == RAW:
         require(len(body) == size, "RAW: size")
         return bytes(body)

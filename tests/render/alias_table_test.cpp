@@ -8,7 +8,7 @@
 namespace fieldcast::scene {
 namespace {
 
-/// How often each index is drawn, summed exactly over the table instead of drawing.
+/// Probability with which each index is drawn, summed exactly over the table.
 std::vector<double> drawn(const std::vector<AliasEntry>& table) {
     std::vector<double> shares(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -25,7 +25,7 @@ TEST(AliasTable, DrawsEveryIndexWithItsProbability) {
     std::vector<double> weights(1000);
     std::ranges::generate(weights, [&] { return weight(random); });
     weights[17] = 0.0;
-    weights[500] = 400.0; // a sun
+    weights[500] = 400.0; // one dominant weight, like a sun
     const auto table = make_alias_table(weights);
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     const auto shares = drawn(table);

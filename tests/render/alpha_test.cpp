@@ -16,7 +16,7 @@ scene::Material black_veil(float alpha) {
     return material;
 }
 
-/// Veils of alpha 0.25 and 0.5, 1 m and 2 m in front of the origin, and a white sky.
+/// Veils of alpha 0.25 and 0.5 at 1 m and 2 m in front of the origin, and a white sky.
 SceneBuilder veils() {
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
@@ -35,14 +35,14 @@ TEST_F(AlphaTest, BlendSurfacesDimWhatIsBehind) {
 }
 
 TEST_F(AlphaTest, EverySegmentOfAPathMeetsBlendSurfacesAnew) {
-    // Through both veils, off a mirror, and back through the same triangles.
+    // Light passes both veils, is reflected by a mirror, and passes the same triangles again.
     SceneBuilder builder = veils();
     builder.add(rectangle({0, 0, -3}, {5, 0, 0}, {0, 5, 0}), builder.add_material(metal(glm::vec3(1.0F), 0.0F)));
     const Camera camera = look_at({}, {0, 0, -1}, 0.2F, 16, 16);
     for (const bool nee : {true, false}) {
         const Average mean =
             average(path_trace(builder.scene(), camera, {.samples = 32, .renders = 8, .next_event_estimation = nee}));
-        // 0.002: the albedo table at n·v ≈ 1
+        // 0.002 is the error of the albedo table at n·v ≈ 1
         EXPECT_NEAR(mean.mean.y, kThrough * kThrough, 4.5 * mean.standard_error.y + 0.002) << nee;
         EXPECT_LT(mean.standard_error.y, 0.005) << nee;
     }
@@ -55,10 +55,10 @@ TEST_F(AlphaTest, ShadowRaysAreDimmedByTheProduct) {
     scene::Light light;
     light.type = scene::LightType::kPoint;
     builder.add_light(light, at({0, 0, 0}));
-    const Camera camera = look_at({0, 0, -2.5F}, {0, 0, -3}, 0.02F, 2, 2); // between veils and wall
+    const Camera camera = look_at({0, 0, -2.5F}, {0, 0, -3}, 0.02F, 2, 2); // the camera is between veils and wall
     const Estimate image = path_trace(builder.scene(), camera, {.samples = 1, .renders = 1, .max_bounces = 1});
     const double expected = kThrough * 0.5 / glm::pi<double>() / 9.0; // intensity 1 at 3 m
-    EXPECT_NEAR(image.mean[0].y, expected, 1e-3 * expected);          // the pixel is not quite at the centre
+    EXPECT_NEAR(image.mean[0].y, expected, 1e-3 * expected);          // the pixel's centre is not exactly at the centre
 }
 
 TEST_F(AlphaTest, ViewsCompositeTheSameTransmittance) {
@@ -70,12 +70,12 @@ TEST_F(AlphaTest, ViewsCompositeTheSameTransmittance) {
     grid.render(source.render(plain_header(camera, 1)), grid_request(camera, 2, 2, {}));
     for (std::size_t view = 0; view < 4; ++view) {
         for (const glm::vec3& pixel : grid.linear_view(view).pixels) {
-            EXPECT_NEAR(pixel.y, static_cast<float>(kThrough), 1e-3F); // half floats
+            EXPECT_NEAR(pixel.y, static_cast<float>(kThrough), 1e-3F); // precision of half floats
         }
     }
 }
 
-/// 2×2 texels: white and solid left, green and transparent right.
+/// 2×2 texels: white and opaque on the left, green and transparent on the right.
 std::vector<std::uint8_t> half_cut_out() {
     return {255, 255, 255, 255, 0, 255, 0, 0, 255, 255, 255, 255, 0, 255, 0, 0};
 }
@@ -93,7 +93,7 @@ TEST_F(AlphaTest, MaskedTexelsAreNotThere) {
 }
 
 TEST_F(AlphaTest, LightSamplingKnowsWhatIsCutOut) {
-    // An emissive rectangle whose right half is cut out, and one that is half transparent: both estimators agree.
+    // For an emissive rectangle with a cut-out right half, and one that is half transparent, both estimators agree.
     for (const scene::AlphaMode mode : {scene::AlphaMode::kMask, scene::AlphaMode::kBlend}) {
         SceneBuilder builder;
         scene::Material material = emitter(glm::vec3(10.0F));
@@ -111,7 +111,7 @@ TEST_F(AlphaTest, LightSamplingKnowsWhatIsCutOut) {
         const Average without = render(false);
         const double error = std::hypot(with.standard_error.y, without.standard_error.y);
         EXPECT_NEAR(with.mean.y, without.mean.y, 4.5 * error);
-        EXPECT_LT(error, 0.01 * with.mean.y); // a forgotten cut-out doubles the light
+        EXPECT_LT(error, 0.01 * with.mean.y); // ignoring the cut-out would double the light
     }
 }
 

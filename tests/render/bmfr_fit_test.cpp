@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits of BMFR against a QR factorisation on the host.
+// Compares fits of BMFR with a QR factorisation on the host.
 #include "core/image/packing.h"
 #include "core/render/camera_record.h"
 #include "core/render/denoise/bmfr.h"
@@ -31,10 +31,10 @@ TEST(BmfrBlocks, CoverEveryImageWhereverTheyLie) {
     EXPECT_EQ(places.size(), 16U);
 }
 
-/// Features of one pixel, then its light; or a row of the ridge.
+/// Features of one pixel, then its light; or one row of the ridge.
 using Row = std::array<double, kFeatures + kColumns>;
 
-/// Least squares by Householder reflections of the rows: weights of all features, for each column of light.
+/// Solves least squares by Householder reflections. Returns the weights of all features for each column of light.
 std::array<std::array<double, kColumns>, kFeatures> least_squares(std::vector<Row> rows) {
     for (std::size_t k = 0; k < kFeatures; ++k) {
         double squares = 0.0;
@@ -73,7 +73,7 @@ std::array<std::array<double, kColumns>, kFeatures> least_squares(std::vector<Ro
     return weights;
 }
 
-/// An image of surfaces in the light, made on the host.
+/// An image of lit surfaces that the host computes.
 struct Picture {
     Camera camera;
     std::vector<shared::GeometryTexel> geometry;
@@ -89,7 +89,7 @@ struct Picture {
     std::size_t index(std::uint32_t x, std::uint32_t y) const { return std::size_t{y} * camera.width_px + x; }
 };
 
-/// Normals and positions that all vary; or a wall across the viewing axis.
+/// A surface with varying normals and positions, or a wall perpendicular to the viewing axis.
 enum class Shape { kCurved, kWall };
 
 /// Noisy light on a surface with gaps.
@@ -127,7 +127,7 @@ protected:
     };
 
     Result fit(const Picture& picture, std::uint32_t frame_number) const {
-        const scene::Scene scene = area_lit_room(); // any
+        const scene::Scene scene = area_lit_room(); // its content is not used
         const scene::GpuScene gpu_scene(device(), scene, traversal());
         const std::array record{make_camera_record(picture.camera)};
         const gpu::Buffer camera = gpu::make_buffer<shared::CameraRecord>(device(), record);
@@ -141,7 +141,7 @@ protected:
         const std::vector<float> lengths(count, 8.0F);
         gpu::write_buffer(device(), now.length, std::as_bytes(std::span(lengths)));
         Bmfr bmfr(device(), accumulation);
-        gpu::Recorder recorder(device());
+        gpu::CommandRecorder recorder(device());
         GroupList groups(device());
         groups.resize(gpu::groups_for(count, shared::kLinearGroup));
         groups.list_all();
@@ -159,7 +159,7 @@ protected:
     }
 };
 
-/// One block: where its pixels are and what they show.
+/// Pixels of one block and the surfaces that they show.
 struct BlockSurface {
     glm::dvec3 offset;
     glm::dvec3 normal;
@@ -240,7 +240,7 @@ TEST_P(BmfrFitTest, AgreesWithAHouseholderQr) {
             }
             std::vector<Row> rows = rows_of(picture, surfaces_of(picture, corner));
             const std::vector<Row> pixels = rows;
-            const double ridge = std::sqrt(static_cast<double>(rows.size()) * 1e-4 / 3.0); // variance of uniform ±0.01
+            const double ridge = std::sqrt(static_cast<double>(rows.size()) * 1e-4 / 3.0); // variance of ±0.01, uniform
             for (std::size_t f = 1; f < kFeatures; ++f) {
                 rows.push_back({});
                 rows.back()[f] = ridge;
@@ -262,8 +262,8 @@ TEST_P(BmfrFitTest, AgreesWithAHouseholderQr) {
         EXPECT_GE(compared, 9U);
     }
     RecordProperty("worst", std::to_string(worst));
-    // Sums of a thousand products in 24 bits: 5e-6 seen on lavapipe. A ridge for noise of twice the
-    // amplitude is off by 8e-4 for the wall and 4e-3 for the curved surface.
+    // The kernel sums a thousand products in 24 bits; lavapipe deviates by 5e-6. A ridge for noise of twice the
+    // amplitude would deviate by 8e-4 for the wall and by 4e-3 for the curved surface.
     EXPECT_LT(worst, 1e-4);
 }
 
@@ -278,10 +278,10 @@ TEST_P(BmfrFitTest, BlocksWithFewSurfacesTakeTheMeanAround) {
         }
     }
     const Result result = fit(picture, 6);
-    EXPECT_EQ(result.fits[Bmfr::block_counts(96, 72).x + 1].trust, 0.0F); // a ninth of its pixels
+    EXPECT_EQ(result.fits[Bmfr::block_counts(96, 72).x + 1].trust, 0.0F); // a ninth of the block is in the image
     for (std::size_t i = 0; i < picture.geometry.size(); ++i) {
         const bool has_surface = picture.geometry[i].id != kNothing;
-        for (int c = 0; c < 3; ++c) { // a mean of equal numbers
+        for (int c = 0; c < 3; ++c) { // mean of equal numbers
             EXPECT_NEAR(result.diffuse[i][c], has_surface ? static_cast<float>(2 + c) : 0.0F, 1e-5F);
         }
     }

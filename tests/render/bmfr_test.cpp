@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What BMFR does to pictures.
+// Images that BMFR filters: constant light, edges, noise, energy, changes, layers.
 #include "core/image/packing.h"
 #include "tests/render/render_test.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 class BmfrTest : public RenderTest {
 protected:
-    /// Diffuse light, all pages, of the last of `frames` frames of one pose.
+    /// Diffuse light of all pages, in the last of `frames` frames of one pose.
     std::vector<glm::vec3> light(const scene::Scene& scene, const Camera& camera, Denoiser denoiser,
                                  std::uint32_t frames) const {
         const scene::GpuScene gpu_scene(device(), scene, traversal());
@@ -31,7 +31,7 @@ protected:
     }
 };
 
-/// Mean of the green channel and its deviation relative to that.
+/// Mean of the green channel, and its standard deviation over the mean.
 std::pair<double, double> spread(std::span<const glm::vec3> pixels) {
     double sum = 0.0;
     double squares = 0.0;
@@ -44,7 +44,7 @@ std::pair<double, double> spread(std::span<const glm::vec3> pixels) {
 }
 
 TEST_F(BmfrTest, ConstantIlluminationPassesUnchanged) {
-    // A box in a constant sky: every sample of every visible point is 1. The image is no multiple of the blocks.
+    // In a constant sky every sample of every visible point of a box is 1. The image size is not a multiple of a block.
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
     builder.add(box({}, glm::vec3(0.5F)), builder.add_material(diffuse({0.8F, 0.2F, 0.1F})));
@@ -52,7 +52,7 @@ TEST_F(BmfrTest, ConstantIlluminationPassesUnchanged) {
     for (const std::uint32_t frames : {1U, 6U}) {
         const Camera camera = look_at({0.7F, 0.5F, 2}, {0, 0, 0}, 0.8F, 75, 41);
         for (const glm::vec3& pixel : light(builder.scene(), camera, Denoiser::kBmfr, frames)) {
-            // Sky pixels stay 0. R11G11B10F: 2^-7.
+            // Sky pixels stay 0. The precision of R11G11B10F is 2^-7.
             EXPECT_TRUE(pixel.y == 0.0F || std::abs(pixel.y - 1.0F) < 0.01F) << pixel.y;
             sky += pixel.y == 0.0F ? 1 : 0;
         }
@@ -61,7 +61,7 @@ TEST_F(BmfrTest, ConstantIlluminationPassesUnchanged) {
 }
 
 TEST_F(BmfrTest, LightFollowsNormals) {
-    // A roof of two slopes under a directional light: two exact, different values side by side in the same block.
+    // A roof of two slopes under a directional light shows two exact, different values side by side in one block.
     SceneBuilder builder;
     builder.add(rectangle({-1, 0, 0}, {1, 0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
     builder.add(rectangle({1, 0, 0}, {1, -0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -76,13 +76,13 @@ TEST_F(BmfrTest, LightFollowsNormals) {
         glm::vec2(glm::dot(-towards, glm::vec3(-0.5F, 1, 0)), glm::dot(-towards, glm::vec3(0.5F, 1, 0))) * slope *
         3.0F / glm::pi<float>();
     for (std::uint32_t x = 0; x < 48; ++x) {
-        // R11G11B10F: 2^-7; the ridge takes 2e-4 of the difference.
+        // The precision of R11G11B10F is 2^-7; the ridge reduces the difference by 2e-4.
         EXPECT_NEAR(filtered[std::size_t{48} * 24 + x].y, x < 24 ? expected.x : expected.y, 0.01F) << x;
     }
 }
 
 TEST_F(BmfrTest, SurroundingsKeepTheEdgeOfAShadow) {
-    // A plane under a directional light, of which a blocker above the camera takes half: no feature knows of the edge.
+    // A blocker above the camera shadows half of a plane under a directional light. No feature shows this edge.
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
     builder.add(rectangle({-5, 3, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.0F))));
@@ -93,7 +93,7 @@ TEST_F(BmfrTest, SurroundingsKeepTheEdgeOfAShadow) {
     for (const std::uint32_t frames : {1U, 10U}) {
         const std::vector<glm::vec3> filtered = light(builder.scene(), camera, Denoiser::kBmfr, frames);
         for (std::uint32_t x = 0; x < 64; ++x) {
-            if (x < 28 || x >= 36) { // four pixels from the edge nothing around is on its other side
+            if (x < 28 || x >= 36) { // at least four pixels from the edge all neighbours are on the same side
                 EXPECT_NEAR(filtered[std::size_t{64} * 32 + x].y, x < 32 ? 0.0F : 3.0F / glm::pi<float>(), 0.01F) << x;
             }
         }
@@ -110,8 +110,8 @@ TEST_F(BmfrTest, NoiseOnAPlaneFallsAndTheMeanStays) {
         const auto smooth = spread(light(builder.scene(), camera, Denoiser::kBmfr, frames));
         RecordProperty("spread" + std::to_string(frames),
                        std::to_string(noisy.second) + " to " + std::to_string(smooth.second));
-        // Ten weights from 1024 pixels: √(10/1024) of the spread, 1/10. In later frames limits from 25 pixels of nine
-        // frames' worth each, and ten results averaged, do not make it worse. The light itself varies by 2 %.
+        // Ten weights from 1024 pixels leave √(10/1024) = 1/10 of the spread. In later frames, limits from 25 pixels of
+        // nine frames each and the average of ten results do not increase it. The light itself varies by 2 %.
         EXPECT_LT(smooth.second, noisy.second / 10.0 + 0.02) << frames;
         EXPECT_NEAR(smooth.first, noisy.first, 4.5 * noisy.second / 64 * noisy.first); // 4.5 standard errors
     }
@@ -123,12 +123,12 @@ TEST_F(BmfrTest, KeepsTheEnergyOfAPicture) {
     const auto noisy = spread(light(scene, camera, Denoiser::kNone, 20));
     const auto smooth = spread(light(scene, camera, Denoiser::kBmfr, 20));
     RecordProperty("means", std::to_string(noisy.first) + " to " + std::to_string(smooth.first));
-    // A fit has the mean of its block. Limits lose samples that stand out where the light around is dark, and add where
-    // a fit falls below zero: 0.1 % here.
+    // A fit keeps the mean of its block. Limits remove bright samples in dark surroundings, and add light where a fit
+    // falls below zero; together this is 0.1 % here.
     EXPECT_NEAR(smooth.first, noisy.first, 0.01 * noisy.first);
 }
 
-// A light that jumps, without noise: how much of the old light is left in the middle of the picture eight frames later.
+// A lamp jumps, without noise. Measures the share of its old light in the middle of the image eight frames later.
 TEST_F(BmfrTest, BothAveragesFollowLightAsTheirWeightsSay) {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -137,7 +137,7 @@ TEST_F(BmfrTest, BothAveragesFollowLightAsTheirWeightsSay) {
     lamp.intensity = glm::vec3(3.0F);
     builder.add_light(lamp, at({0, 1, 0}));
     scene::Scene scene = builder.scene();
-    scene.nodes.back() = {}; // its place comes from the animation
+    scene.nodes.back() = {}; // the animation gives its position
     scene.nodes.back().is_animated = true;
     scene::AnimationChannel channel;
     channel.node = static_cast<std::uint32_t>(scene.nodes.size() - 1);
@@ -162,20 +162,21 @@ TEST_F(BmfrTest, BothAveragesFollowLightAsTheirWeightsSay) {
         middle.push_back(static_cast<double>(light[std::size_t{48} * 24 + 24].y));
     }
     const double before = middle[39];
-    const double after = before / 4; // twice as far
-    double noisy = 1.0;              // what is left of the old light in the noisy average, and in the filtered one
-    double filtered = 1.0;
+    const double after = before / 4; // the lamp is twice as far away
+    double noisy = 1.0;              // share of the old light in the noisy average
+    double filtered = 1.0;           // share of the old light in the filtered average
     for (int frame = 0; frame < 8; ++frame) {
         noisy *= 0.8;
         filtered = 0.9 * filtered + 0.1 * noisy;
     }
     const double left = (middle.back() - after) / (before - after);
     RecordProperty("left", std::to_string(left) + " of " + std::to_string(filtered));
-    EXPECT_NEAR(left, filtered, 0.03); // R11G11B10F: 1 % of `middle`, which is 3/4 of the scale at most; fits of a spot
+    // R11G11B10F errs by 1 % of `middle`, which is at most 3/4 of the scale. The rest is the error of fits to a spot.
+    EXPECT_NEAR(left, filtered, 0.03);
 }
 
 TEST_F(BmfrTest, FiltersBlendSurfacesInTheirOwnPage) {
-    // A pane before a wall and the sky beside it, under a large lamp.
+    // A pane in front of a wall and the sky beside it, under a large lamp.
     SceneBuilder builder;
     builder.add(rectangle({0, 0, -1}, {1, 0, 0}, {0, 2, 0}), builder.add_material(diffuse(glm::vec3(0.5F))));
     scene::Material glass = diffuse(glm::vec3(0.5F));
@@ -186,23 +187,23 @@ TEST_F(BmfrTest, FiltersBlendSurfacesInTheirOwnPage) {
     const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, 0.7F, 64, 64);
     const auto noisy = light(builder.scene(), camera, Denoiser::kNone, 1);
     const auto smooth = light(builder.scene(), camera, Denoiser::kBmfr, 1);
-    ASSERT_EQ(smooth.size(), std::size_t{3} * 64 * 64); // the wall's page, then two for what is before it
+    ASSERT_EQ(smooth.size(), std::size_t{3} * 64 * 64); // the wall's page, then two pages for layers
     std::array<std::vector<glm::vec3>, 2> pane;
     for (std::size_t i = 0; i < smooth.size(); ++i) {
         const std::size_t page = i / 4096;
         const glm::ivec2 from_middle = glm::abs(glm::ivec2(i % 64, i / 64 % 64) - 32);
-        if (page == 1 && from_middle.x < 12 && from_middle.y < 12) { // the pane is 17.5 pixels wide to each side
+        if (page == 1 && from_middle.x < 12 && from_middle.y < 12) { // the pane extends 17.5 pixels to each side
             pane[0].push_back(noisy[i]);
             pane[1].push_back(smooth[i]);
         } else if (page == 2 || (page == 1 && (from_middle.x > 20 || from_middle.y > 20))) {
-            EXPECT_EQ(smooth[i], glm::vec3(0.0F)); // nothing there
+            EXPECT_EQ(smooth[i], glm::vec3(0.0F)); // no surface
         }
     }
     const auto before = spread(pane[0]);
     const auto after = spread(pane[1]);
     RecordProperty("spread", std::to_string(before.second) + " to " + std::to_string(after.second));
     EXPECT_GT(before.second, 0.1);
-    // As on a plane, with a third of a block's pixels at least: √(10/300); the light varies over the pane by itself.
+    // As on a plane, but with at least a third of a block's pixels: √(10/300). The light itself varies over the pane.
     EXPECT_LT(after.second, before.second / 5.0 + 0.1);
     EXPECT_NEAR(after.first, before.first, 4.5 * before.second / 24 * before.first);
 }
@@ -212,7 +213,7 @@ TEST_F(BmfrTest, AnEmptyPictureAndASmallOneStayFinite) {
     builder.add(box({0, 0, 9}, glm::vec3(0.5F)), builder.add_material(metal(glm::vec3(0.9F), 0.1F)));
     builder.environment().constant = glm::vec3(2.0F);
     for (const std::uint32_t size : {1U, 40U}) {
-        for (const glm::vec3 target : {glm::vec3(0, 0, -1), glm::vec3(0, 0, 9)}) { // away from the box and at it
+        for (const glm::vec3 target : {glm::vec3(0, 0, -1), glm::vec3(0, 0, 9)}) { // away from the box, then at it
             const Camera camera = look_at({0, 0, 7}, target, 0.7F, size, size);
             for (const glm::vec3& pixel : light(builder.scene(), camera, Denoiser::kBmfr, 3)) {
                 EXPECT_TRUE(std::isfinite(pixel.x) && pixel.x >= 0.0F);

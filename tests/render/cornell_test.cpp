@@ -21,12 +21,12 @@ TEST_F(CornellTest, AgreesWithMitsuba) {
     Estimate expected{kSize, kSize, {}, {}};
     for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
         expected.mean.emplace_back(reference.pixels[i]);
-        // The reference's samples are as noisy as ours, but 16 times as many.
+        // The reference has 16 times as many samples of equal noise.
         expected.variance.push_back(image.variance[i] / 16.0);
     }
 
-    // Blocks: 432 comparisons at 5 standard errors give a false alarm once in 4000 runs of other seeds. 1 % is for
-    // the metal: Mitsuba's lacks multiple scattering, and its images carry that into the room.
+    // Blocks: 432 comparisons at 5 standard errors give a false alarm once in 4000 runs with other seeds. 1 % allows
+    // for the metal, because Mitsuba's lacks multiple scattering, which also affects the light in the room.
     double worst = 0.0;
     for (std::uint32_t y = 0; y < kSize; y += kBlock) {
         for (std::uint32_t x = 0; x < kSize; x += kBlock) {
@@ -42,8 +42,8 @@ TEST_F(CornellTest, AgreesWithMitsuba) {
         }
     }
 
-    // The whole image: as far from the reference as its noise explains. The variances of 8 renders are known within
-    // 53 %/√6912 overall; 1.2 is for the heavy tails of caustics from the metal.
+    // Whole image: noise must explain its distance from the reference. The variances of 8 renders are known within
+    // 53 %/√6912 overall; the factor 1.2 allows for heavy tails of caustics from the metal.
     image::RgbF32 mean{kSize, kSize, {}};
     double expected_error = 0.0;
     for (std::size_t i = 0; i < image.mean.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 using DrawGeometryTest = RenderTest;
 
-/// Two boxes that stand still, one of them scaled, and two spheres below a node that slides.
+/// Two static boxes, one of them scaled, and two spheres below a sliding node.
 scene::Scene mobile() {
     SceneBuilder builder;
     const std::uint32_t white = builder.add_material(diffuse(glm::vec3(0.5F)));
@@ -37,11 +37,11 @@ TEST(RigidGroups, HoldWhatMovesTogether) {
     ASSERT_EQ(groups.size(), 2U);
     EXPECT_EQ(groups[0].node, scene::kNone);
     ASSERT_EQ(groups[0].parts.size(), 2U);
-    EXPECT_EQ(groups[0].parts[1].group_from_object[3], glm::vec4(15, 0, 0, 1)); // in the world
+    EXPECT_EQ(groups[0].parts[1].group_from_object[3], glm::vec4(15, 0, 0, 1)); // world space
     EXPECT_EQ(groups[1].node, scene.channels[0].node);
     ASSERT_EQ(groups[1].parts.size(), 2U);
     EXPECT_EQ(groups[1].parts[0].instance, 2U);
-    EXPECT_EQ(groups[1].parts[0].group_from_object[3], glm::vec4(2, 0, 0, 1)); // below the node that slides
+    EXPECT_EQ(groups[1].parts[0].group_from_object[3], glm::vec4(2, 0, 0, 1)); // space of the sliding node
 }
 
 TEST_F(DrawGeometryTest, FirstVerticesNumberEveryTriangleOnce) {
@@ -55,7 +55,7 @@ TEST_F(DrawGeometryTest, FirstVerticesNumberEveryTriangleOnce) {
     const auto names = gpu::read_buffer_as<glm::uvec2>(device(), geometry.triangles(), geometry.triangle_count());
     ASSERT_EQ(indices.size(), geometry.triangle_count());
 
-    std::map<std::pair<std::uint32_t, std::uint32_t>, glm::vec3> middles; // by instance and primitive, in the group
+    std::map<std::pair<std::uint32_t, std::uint32_t>, glm::vec3> middles; // of (instance, primitive), in the group
     for (const glm::uvec3& corners : indices) {
         const glm::uvec2 name = names.at(vertices[corners.x].triangle);
         const glm::vec3 middle =
@@ -86,7 +86,7 @@ TEST_F(DrawGeometryTest, BoxesHoldTheirClusters) {
         device(), geometry.vertices(), geometry.vertices().size_bytes() / sizeof(scene::DrawVertex));
     const auto indices =
         gpu::read_buffer_as<std::uint32_t>(device(), geometry.indices(), geometry.indices().size_bytes() / 4);
-    std::uint32_t next = 0; // clusters follow each other, so that neighbours can be drawn at once
+    std::uint32_t next = 0; // clusters are contiguous, so that one call can draw neighbours
     for (const scene::DrawGroup& group : geometry.groups()) {
         for (const auto& clusters : group.clusters) {
             for (const scene::TriangleCluster& cluster : clusters) {
@@ -101,9 +101,9 @@ TEST_F(DrawGeometryTest, BoxesHoldTheirClusters) {
     }
     EXPECT_EQ(next, indices.size());
     const auto& sphere = geometry.groups()[1].clusters[0];
-    EXPECT_EQ(sphere.size(), 8U); // 960 triangles
+    EXPECT_EQ(sphere.size(), 8U); // for 960 triangles
     for (const scene::TriangleCluster& part : sphere) {
-        EXPECT_LT(part.half_size.x * part.half_size.y * part.half_size.z, 0.3F); // of 1 around all of it
+        EXPECT_LT(part.half_size.x * part.half_size.y * part.half_size.z, 0.3F); // the box of the whole sphere has 1
     }
 }
 

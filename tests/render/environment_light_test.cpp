@@ -22,28 +22,28 @@ scene::Environment one_bright_texel(std::uint32_t x, std::uint32_t y, float radi
     return environment;
 }
 
-/// Conventions: −Z at u = 0.5, +Y at v = 0; u grows to the right of someone who looks along −Z.
+/// Direction of a texel's centre: −Z at u = 0.5, +Y at v = 0; looking along −Z, u grows to the right.
 glm::vec3 direction_of(std::uint32_t x, std::uint32_t y) {
     const float phi = ((static_cast<float>(x) + 0.5F) / kWidth - 0.5F) * 2.0F * glm::pi<float>();
     const float theta = (static_cast<float>(y) + 0.5F) / kHeight * glm::pi<float>();
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
-SceneBuilder speck() { // far away, so that the scene is not empty
+SceneBuilder speck() { // makes the scene not empty, far away from the camera
     SceneBuilder builder;
     builder.add(box({500, 500, 500}, glm::vec3(0.01F)), builder.add_material(diffuse(glm::vec3(0.0F))));
     return builder;
 }
 
 TEST_F(EnvironmentLightTest, TexelsAppearWhereTheConventionPutsThem) {
-    // Texels beside −Z, +X, +Z (the seam), −X, and beside both poles.
+    // Texels next to −Z, +X, +Z (the seam), −X, and to both poles.
     for (const glm::uvec2 texel : {glm::uvec2(32, 15), glm::uvec2(48, 16), glm::uvec2(0, 15), glm::uvec2(63, 15),
                                    glm::uvec2(16, 16), glm::uvec2(20, 0), glm::uvec2(40, 31)}) {
         SceneBuilder builder = speck();
         builder.environment() = one_bright_texel(texel.x, texel.y, 1.0F);
         const Camera camera = look_at({0, 0, 0}, direction_of(texel.x, texel.y), 0.02F, 3, 3);
         const Estimate image = path_trace(builder.scene(), camera, {.samples = 1, .renders = 1});
-        // The texel's centre is seen, whatever the filter; 1 % for the width of a pixel and the filter's precision.
+        // The pixel sees the texel's centre. 1 % allows for the width of a pixel and the filter's precision.
         EXPECT_NEAR(image.mean[4].y, 1.0, 0.01) << texel.x << " " << texel.y;
     }
 }
@@ -52,7 +52,7 @@ TEST_F(EnvironmentLightTest, LooksUpAndDownWithoutInvalidValues) {
     SceneBuilder builder = speck();
     builder.environment() = one_bright_texel(0, 0, 0.0F);
     builder.environment().pixels.assign(std::size_t{kWidth} * kHeight, glm::vec3(0.25F));
-    for (const float up : {1.0F, -1.0F}) { // the middle pixel looks along the pole exactly
+    for (const float up : {1.0F, -1.0F}) { // the middle pixel looks exactly along the pole
         const Estimate image =
             path_trace(builder.scene(), look_at({0, 0, 0}, {0, up, 0}, 0.5F, 5, 5), {.samples = 1, .renders = 1});
         for (const glm::dvec3& pixel : image.mean) {
@@ -62,8 +62,8 @@ TEST_F(EnvironmentLightTest, LooksUpAndDownWithoutInvalidValues) {
 }
 
 TEST_F(EnvironmentLightTest, SamplingFindsTheLightWhereLookUpsSeeIt) {
-    // Irradiance of one bilinear texel: its radiance × the solid angle of one texel (the filter spreads it, the
-    // integral over u is exact and over v off by the variation of sin θ, 0.2 %).
+    // Irradiance of one bilinear texel is its radiance × its solid angle. The filter spreads it: the integral over u is
+    // exact, that over v deviates by the variation of sin θ, 0.2 %.
     const glm::uvec2 texel(40, 6);
     SceneBuilder builder;
     builder.environment() = one_bright_texel(texel.x, texel.y, 100.0F);
@@ -83,9 +83,9 @@ TEST_F(EnvironmentLightTest, SamplingFindsTheLightWhereLookUpsSeeIt) {
 }
 
 TEST_F(EnvironmentLightTest, LargeMapsAreSampledAsFinelyAsSmallOnes) {
-    // 2²¹ texels: the bits of one float number each texel and leave 3 for the alias decision, which would misjudge the
-    // brighter half by several percent. Two halves of sky in a ratio of 1 : 6 (alias decision 2 : 7):
-    // the mean must be that of the same map with few texels.
+    // The bits of one float that select one of 2²¹ texels leave 3 for the alias decision. This would change the
+    // brighter half by several percent. The sky has two halves in a ratio of 1 : 6 (alias decision 2 : 7), and the mean
+    // must be that of the same map with few texels.
     const auto render = [&](std::uint32_t width) {
         SceneBuilder builder;
         scene::Environment& environment = builder.environment();
@@ -103,7 +103,7 @@ TEST_F(EnvironmentLightTest, LargeMapsAreSampledAsFinelyAsSmallOnes) {
     const Average large = render(2048);
     const double error = std::hypot(small.standard_error.y, large.standard_error.y);
     EXPECT_NEAR(large.mean.y, small.mean.y, 4.5 * error);
-    EXPECT_LT(error, 0.003);                    // of a mean of 1.75
+    EXPECT_LT(error, 0.003);                    // the mean is 1.75
     EXPECT_NEAR(small.mean.y, 0.5 * 3.5, 0.01); // albedo × mean radiance; the seams of the halves are a texel wide
 }
 

@@ -39,18 +39,18 @@ TEST_F(FurnaceTest, WhiteSpheresVanishInAWhiteSky) {
     glass.transmission_factor = 1.0F;
     const std::vector<scene::Material> rows{dielectric, metal(glm::vec3(1.0F), 0.0F), glass};
     const auto height = static_cast<std::uint32_t>(rows.size());
-    // From so far away that one unit is one cell.
+    // At this distance, one unit is one cell.
     const Camera camera = look_at({0, 0, 60}, {0, 0, 0}, 2.0F * std::atan(0.5F * static_cast<float>(height) / 60.0F),
                                   kCell * kRoughnesses, kCell * height);
     const scene::Scene scene = furnace(rows);
-    for (const bool nee : {false, true}) { // in a constant sky, sampling the BSDF alone has the least noise
+    for (const bool nee : {false, true}) { // without: in a constant sky, sampling the BSDF alone has the least noise
         const Estimate image = path_trace(scene, camera, {.samples = 32, .renders = 4, .next_event_estimation = nee});
         for (std::uint32_t row = 0; row < height; ++row) {
             for (std::uint32_t col = 0; col < kRoughnesses; ++col) {
                 const Average cell = average(image, col * kCell, row * kCell, kCell, kCell);
-                // Bounds of the issue. Below 1: light scattered below the horizon of the geometric normal, and glass
-                // that still holds light after eight bounces. Above: the interpolation of the albedo table. Three
-                // standard errors for the noise, which is of that size for rough glass.
+                // Lower bound: light is lost below the horizon of the geometric normal, and in glass after eight
+                // bounces. Upper bound: interpolation of the albedo table. Three standard errors allow for noise, which
+                // is of that size for rough glass.
                 const double noise = 3.0 * cell.standard_error.y;
                 EXPECT_GE(cell.mean.y, 0.97 - noise) << "row " << row << " roughness " << 0.2 * col << " nee " << nee;
                 EXPECT_LE(cell.mean.y, 1.003 + noise) << "row " << row << " roughness " << 0.2 * col << " nee " << nee;
@@ -63,9 +63,8 @@ TEST_F(FurnaceTest, WhiteSpheresVanishInAWhiteSky) {
 }
 
 TEST_F(FurnaceTest, DiffuseSurfacesAreExactFarFromTheOriginAndScaled) {
-    // A corner of three white walls 1 km away and 100 times as large in object space: self-intersection would show as
-    // dark pixels. Seen diffusely in a constant sky every sample is exactly 1 if it escapes, and here all do: the walls
-    // are seen from outside.
+    // Self-intersection would make pixels of these walls dark: three white walls at 1 km, 100 times as large in object
+    // space. They are seen from outside, so all diffuse samples escape to the constant sky and are exactly 1.
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
     const glm::mat4 place = glm::mat4(0.01F, 0, 0, 0, 0, 0.01F, 0, 0, 0, 0, 0.01F, 0, 1000, 20, -700, 1);
@@ -77,7 +76,7 @@ TEST_F(FurnaceTest, DiffuseSurfacesAreExactFarFromTheOriginAndScaled) {
     }
 }
 
-/// Inside of a closed ball of radius 1. Flat faces: the solution for uniform emission holds for any closed shape.
+/// A closed ball of radius 1, seen from inside. Its flat faces do not matter to the solution for uniform emission.
 SceneBuilder ball(const scene::Material& material) {
     SceneBuilder builder;
     builder.add(turned_inside_out(sphere(1.0F, 96, Shading::kFlat)), builder.add_material(material));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is kept of views from frame to frame: when it is given back, and that pauses leave nothing wrong behind.
+// Data that views keep from frame to frame: its memory is freed, and pauses leave no outdated light.
 #include "tests/render/render_test.h"
 
 namespace fieldcast::render {
@@ -11,7 +11,7 @@ constexpr LatticeGeometry kGeometry{{0.06F, 0.06F}};
 
 class GridKeepingTest : public RenderTest {
 protected:
-    /// Views average their light, and holes are filled from the frame before where the settings have that.
+    /// Settings with averaged views and holes filled from the previous frame.
     static FrameHeader header_of(std::uint32_t frame, DenoisedImages images) {
         FrameHeader header = plain_header(room_camera(kWidth, kHeight), 1);
         header.cut = frame == 0;
@@ -50,12 +50,12 @@ TEST_F(GridKeepingTest, ViewsThatPauseBeginAnew) {
             if (frame < 3) {
                 render(paused, header);
             } else {
-                render_source(paused, header); // nobody could take views
+                render_source(paused, header); // no view is rendered
             }
             render_source(fresh, header);
         }
         const FrameHeader resumed = header_of(6, images);
-        EXPECT_EQ(render(paused, resumed), render(fresh, resumed)) << "nothing is left of what was shown before";
+        EXPECT_EQ(render(paused, resumed), render(fresh, resumed)) << "no light from before the pause may remain";
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views made from a source against the same views path traced without reuse.
+// Compares views that reuse a source with the same views path traced without reuse.
 #include "core/image/packing.h"
 #include "core/lightfield/sources.h"
 #include "core/render/setup.h"
@@ -27,7 +27,7 @@ std::uint32_t discarded(const Views& views) {
     return sum;
 }
 
-/// Largest difference of the means of 8×8 blocks, over the block's or the image's mean, whichever is more; and relative
+/// Largest difference of the means of 8×8 blocks, over the greater of the block's and the image's mean; and relative
 /// difference of the whole image.
 struct Difference {
     double worst_block = 0.0;
@@ -83,8 +83,8 @@ TEST_F(GridRendererTest, TheSourcesOwnViewIsTheSourceRemodulated) {
             const scene::Material& material = s.scene.materials[id & 0xFFFU];
             expected = material.emissive_factor + light[i] * glm::vec3(material.base_colour_factor);
         }
-        // Every tap hits the pixel's centre up to rounding of the projection (1e-5 px of its neighbours' light, which
-        // at one sample per pixel can be 100 times brighter), and half floats: 2^-11.
+        // Every tap hits the pixel's centre up to rounding of the projection, 1e-5 px. Neighbours can be 100 times
+        // brighter at one sample per pixel. Half floats add 2^-11.
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(view.pixels[i][c], expected[c], expected[c] * 1e-3F + 2e-3F) << i;
         }
@@ -96,7 +96,7 @@ TEST_F(GridRendererTest, SeveralSourcesShowMoreAndTheSameLight) {
     const Camera camera = room_camera(kWidth, kHeight);
     const ViewRequest request = grid_request(camera, 6, 6, {{kSpacing, kSpacing}});
     FrameHeader header = plain_header(camera, 1);
-    header.settings.max_bounces = 1; // no noise
+    header.settings.max_bounces = 1; // direct light of a point light has no noise
     header.source_geometry = request.geometry;
     std::uint32_t before = 0;
     for (const char* sources : {"top-left", "diagonal", "corners"}) {
@@ -119,18 +119,18 @@ TEST_F(GridRendererTest, SeveralSourcesShowMoreAndTheSameLight) {
     }
 }
 
-/// How the grid of a noiseless scene is asked for.
+/// Parameters of the grid of a noiseless scene.
 struct GridCase {
     const char* name;
     bool guard_band;
     LatticeGeometry geometry;
     std::uint32_t width_px;
     std::uint32_t height_px;
-    float fov_share; ///< of the source's
+    float fov_share; ///< field of view over that of the source
 };
 
 TEST_F(GridRendererTest, ViewsOfANoiselessSceneEqualTheirReferences) {
-    // A point light and one bounce: one sample per pixel is exact, so every view can be checked.
+    // With a point light and one bounce, one sample per pixel is exact, so every view can be checked.
     Stage s = stage(point_lit_room());
     const Camera camera = room_camera(kWidth, kHeight);
     const LatticeGeometry parallel{{kSpacing, kSpacing}};
@@ -150,7 +150,7 @@ TEST_F(GridRendererTest, ViewsOfANoiselessSceneEqualTheirReferences) {
         const Views views = s.grid.render(s.source.render(header),
                                           {test.geometry, fov, test.width_px, test.height_px, lattice_positions(grid)});
         const double share = discarded(views) / (36.0 * test.width_px * test.height_px);
-        // Most pixels must come from the source, or this compares path tracing with itself.
+        // Most pixels must come from the source. Otherwise this compares path tracing with itself.
         EXPECT_LT(share, test.guard_band ? 0.10 : 0.16);
         Difference worst;
         for (std::size_t i = 0; i < views.views.size(); ++i) {
@@ -162,9 +162,9 @@ TEST_F(GridRendererTest, ViewsOfANoiselessSceneEqualTheirReferences) {
             worst.worst_block = std::max(worst.worst_block, difference.worst_block);
             worst.whole = std::max(worst.whole, difference.whole);
         }
-        // Blocks: one pixel per row of 8 where a view uncovers the far side of a shadow's edge and the source has
-        // pixels of its near side only. Whole images: at most one block in twenty has such an edge; otherwise bilinear
-        // taps blur without gain and R11G11B10F rounds up as often as down.
+        // Blocks: one pixel per row of 8 is wrong where a view uncovers the far side of a shadow's edge and the source
+        // shows the near side only. Whole images: at most one block in twenty has such an edge. Elsewhere bilinear taps
+        // blur without gain, and R11G11B10F rounds up as often as down.
         EXPECT_LT(worst.whole, 0.006);
         EXPECT_LT(worst.worst_block, 1.0 / 8.0);
         RecordProperty(test.name, "discarded " + std::to_string(share) + ", worst block " +
@@ -174,7 +174,7 @@ TEST_F(GridRendererTest, ViewsOfANoiselessSceneEqualTheirReferences) {
 }
 
 TEST_F(GridRendererTest, ViewsOfAConvergedSourceEqualTheirReferences) {
-    // Global illumination: noise on both sides.
+    // With global illumination both images have noise.
     Stage s = stage(area_lit_room());
     constexpr std::uint32_t width = 32;
     constexpr std::uint32_t height = 24;
@@ -198,8 +198,8 @@ TEST_F(GridRendererTest, ViewsOfAConvergedSourceEqualTheirReferences) {
                     mean += glm::dvec3(view.pixels[reference.index(x + k % 8, y + k / 8)]) / 64.0;
                 }
                 const Average expected = average(reference, x, y, 8, 8);
-                // 36 blocks at 4.5 standard errors of the difference (the view's noise is as large as the reference's,
-                // and √2 larger again because neighbours share taps); 2 % for edges and curvature between taps.
+                // 36 blocks at 4.5 standard errors of the difference. The view's noise is √2 that of the reference,
+                // because neighbours share taps. 2 % allow for edges and curvature between taps.
                 EXPECT_NEAR(mean.y, expected.mean.y,
                             4.5 * std::sqrt(3.0) * expected.standard_error.y + 0.02 * expected.mean.y)
                     << "view " << i << " block " << x << " " << y;
@@ -216,7 +216,7 @@ TEST_F(GridRendererTest, IsDeterministicAndViewsDoNotDependOnTheirBatch) {
     const ViewRequest all = grid_request(camera, 6, 6, geometry);
     const SourcePlanes& planes = s.source.render(plain_header(camera, 1));
     const Views first = s.grid.render(planes, all);
-    EXPECT_GT(discarded(first), 1000U); // holes are what could differ
+    EXPECT_GT(discarded(first), 1000U); // only holes could differ
     std::vector<LinearView> linear;
     for (std::size_t i = 0; i < all.positions.size(); ++i) {
         linear.push_back(s.grid.linear_view(i));
@@ -237,7 +237,7 @@ TEST_F(GridRendererTest, IsDeterministicAndViewsDoNotDependOnTheirBatch) {
 }
 
 TEST_F(GridRendererTest, DiscardsAreThePixelsThatArePathTraced) {
-    // Two frames that differ in their seed only: exactly the traced pixels change. No pixel's light is free of noise.
+    // Two frames with different seeds differ exactly in the traced pixels, because every pixel's light has noise.
     Stage s = stage(sky_lit_room());
     const Camera camera = room_camera(kWidth, kHeight);
     const ViewRequest request = grid_request(camera, 3, 3, {{2 * kSpacing, 2 * kSpacing}});
@@ -247,7 +247,7 @@ TEST_F(GridRendererTest, DiscardsAreThePixelsThatArePathTraced) {
     std::array<Views, 2> views;
     for (std::uint32_t seed = 0; seed < 2; ++seed) {
         frame.header.seed = 100 + seed;
-        frame.header.settings.samples_per_pixel = 8; // of the holes
+        frame.header.settings.samples_per_pixel = 8; // samples of the holes
         ASSERT_TRUE(planes.upload(frame).has_value());
         views[seed] = s.grid.render(planes, request);
         for (std::size_t i = 0; i < request.positions.size(); ++i) {
@@ -267,7 +267,7 @@ TEST_F(GridRendererTest, DiscardsAreThePixelsThatArePathTraced) {
     }
 }
 
-/// Counts of pixels out of the source's frustum, from the device and from the views' own depth.
+/// Compares the device's count of pixels out of the source's frustum with the count from the views' own depth.
 void expect_out_of_frustum_agrees(RenderTest::Stage& s) {
     constexpr std::uint32_t width = 160;
     constexpr std::uint32_t height = 90;
@@ -293,12 +293,12 @@ void expect_out_of_frustum_agrees(RenderTest::Stage& s) {
             outside += p.x < 0.0F || p.y < 0.0F || p.x >= width || p.y >= height ? 1U : 0U;
         }
         const double share = 100.0 / (width * height);
-        // The bound. Rounding at the border is all that may differ.
+        // Per cent of all pixels. Only rounding at the border may differ.
         EXPECT_NEAR(views.views[i].discards.out_of_frustum * share, outside * share, 0.3) << i;
         gpu_total += views.views[i].discards.out_of_frustum * share / 36.0;
         cpu_total += outside * share / 36.0;
     }
-    EXPECT_GT(gpu_total, 0.5); // per cent of all pixels: there is something to count
+    EXPECT_GT(gpu_total, 0.5); // per cent of all pixels; there must be pixels to count
     testing::Test::RecordProperty("out_of_frustum_percent",
                                   std::to_string(gpu_total) + " cpu " + std::to_string(cpu_total));
     EXPECT_EQ(s.grid.invalid_sample_count() + s.source.invalid_sample_count(), 0U);
@@ -333,7 +333,7 @@ TEST_F(AtelierTest, HasNoInvalidSamplesOverSeveralFrames) {
     EXPECT_EQ(s.grid.invalid_sample_count() + s.source.invalid_sample_count(), 0U);
 }
 
-/// Scenes of the shared folder, which not every machine has.
+/// Scenes of the shared folder; skipped on machines without them.
 class SharedSceneTest : public GridRendererTest, public testing::WithParamInterface<const char*> {};
 
 std::filesystem::path shared_scene(const std::string& folder_name) {

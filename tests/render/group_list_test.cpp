@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels that run only where there is a surface, and what they leave alone elsewhere.
+// Kernels that run only on groups with a surface, and must not change other pixels.
 #include "core/render/group_list.h"
 #include "shaders/shared/frame.h"
 #include "tests/render/render_test.h"
@@ -14,12 +14,12 @@ using testing::UnorderedElementsAre;
 
 class GroupListTest : public RenderTest {
 protected:
-    /// What a list holds once the flags of these of 32 groups were set.
+    /// The listed groups, of 32, after the flags of `flagged` were set.
     std::vector<std::uint32_t> listed(const std::vector<std::uint32_t>& flagged, std::uint32_t width_px) {
         GroupList groups(device());
         EXPECT_TRUE(groups.resize(32));
         EXPECT_FALSE(groups.resize(32));
-        gpu::Recorder recorder(device());
+        gpu::CommandRecorder recorder(device());
         groups.clear(recorder);
         recorder.submit();
         for (const std::uint32_t group : flagged) {
@@ -34,15 +34,15 @@ protected:
 
     std::vector<std::uint32_t> contents(const GroupList& groups) const {
         const auto head = gpu::read_buffer_as<std::uint32_t>(device(), groups.list(), 4);
-        EXPECT_EQ(head[1], head[0]); // fewer than fit into one row of groups
+        EXPECT_EQ(head[1], head[0]); // they fit into one row of workgroups
         EXPECT_EQ(head[2], head[0] > 0 ? 1U : 0U);
         EXPECT_EQ(head[3], 1U);
         return gpu::read_buffer_as<std::uint32_t>(device(), groups.list(), head[0], 16);
     }
 };
 
-// Rows of 100 pixels. Group 10 has the pixels 640 to 703, so that 639 to 704 touch them in their rows, 539 to 604 above
-// and 739 to 804 below: groups 9 to 11, 8 to 9, and 11 to 12.
+// Rows have 100 pixels. Group 10 has the pixels 640 to 703. The pixels 639 to 704 touch them in their rows, 539 to 604
+// above and 739 to 804 below. These are groups 9 to 11, 8 to 9, and 11 to 12.
 TEST_F(GroupListTest, ListsFlaggedGroupsAndThoseThatTouchThem) {
     EXPECT_THAT(listed({10}, 100), UnorderedElementsAre(8, 9, 10, 11, 12));
     EXPECT_THAT(listed({0}, 100), UnorderedElementsAre(0, 1, 2));
@@ -63,8 +63,8 @@ TEST_F(GroupListTest, ListsAll) {
     EXPECT_EQ(contents(groups), all);
 }
 
-/// Two small veils before a wall that does not fill the picture. One swings from one end to the other, farther than a
-/// group is wide, the other sinks until it hangs right below its old place.
+/// Two small veils in front of a wall that does not fill the image. One swings from one end to the other, farther than
+/// a group is wide. The other sinks until it is directly below its old position.
 scene::Scene moving_veils() {
     SceneBuilder builder;
     scene::Material veil = diffuse(glm::vec3(0.5F));
@@ -81,7 +81,7 @@ scene::Scene moving_veils() {
     return builder.scene();
 }
 
-// Filters must not see what they left in pixels that had a surface earlier.
+// Filters must not read their old results in pixels that had a surface earlier.
 TEST_F(GroupListTest, AFrameWithoutHistoryIsThatOfAFreshRenderer) {
     const scene::Scene scene = moving_veils();
     scene::GpuScene gpu_scene(device(), scene, traversal());

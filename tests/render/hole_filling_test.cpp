@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every stage of hole filling against holes that are path traced.
+// Compares every stage of hole filling with path traced holes.
 #include "core/render/setup.h"
 #include "tests/render/render_test.h"
 
@@ -16,17 +16,17 @@ HoleFilling only(const char* stages) {
     return parse_hole_filling(stages, 6, 6).value();
 }
 
-/// Mean luminance-like error of the green channel over the holes of all views.
+/// Error of the green channel over the holes of all views.
 struct HoleError {
     double rmse = 0.0;
     double bias = 0.0;
-    double mean = 0.0; ///< of the expected values
+    double mean = 0.0; ///< mean of the expected values
     std::size_t holes = 0;
 };
 
 class HoleFillingTest : public RenderTest {
 protected:
-    /// One frame of a 6×6 grid; without guard band, so that there are holes at the border and behind edges.
+    /// One frame of a 6×6 grid. Without guard band, holes appear at the border, too.
     Views render(Stage& s, GridRenderer& grid, const HoleFilling& holes, std::uint32_t frame = 0, bool cut = true,
                  std::uint32_t samples = 1) const {
         FrameHeader header = plain_header(room_camera(kWidth, kHeight), samples);
@@ -61,7 +61,7 @@ protected:
 };
 
 TEST_F(HoleFillingTest, StagesKeepTheLightOfANoiselessScene) {
-    // A point light: path traced holes are exact, so whatever a stage changes is its error.
+    // With a point light, path traced holes are exact, so every change by a stage is its error.
     Stage s = stage(point_lit_room());
     FrameHeader header = plain_header(room_camera(kWidth, kHeight), 1);
     header.settings.max_bounces = 1;
@@ -72,7 +72,7 @@ TEST_F(HoleFillingTest, StagesKeepTheLightOfANoiselessScene) {
     };
     GridRenderer exact(device(), s.gpu_scene);
     render_with(exact, HoleFilling::path_traced());
-    double mean = 0.0; // of the picture
+    double mean = 0.0; // mean of the image
     for (const glm::vec3& pixel : exact.linear_view(14).pixels) {
         mean += pixel.y / static_cast<double>(kWidth * kHeight);
     }
@@ -81,9 +81,9 @@ TEST_F(HoleFillingTest, StagesKeepTheLightOfANoiselessScene) {
         render_with(s.grid, only(stages));
         const HoleError error = error_of(s.grid, exact);
         EXPECT_GT(error.holes, 1000U);
-        // At the picture's border all neighbours of a hole lie on one side, and the filter's centre of gravity 1.4 px
-        // (its deviation) inside; in so small a picture the point light falls off by up to 7 % per pixel. The other
-        // stages look for the very surface point.
+        // At the image's border all neighbours of a hole are on one side. The filter's centroid is then 1.4 px (its
+        // deviation) inside, and in this small image the light falls off by up to 7 % per pixel. The other stages use
+        // the light of the same surface point.
         const double limit = std::string(stages) == "denoise" ? 1.4 * 0.07 : 0.02;
         EXPECT_LT(std::abs(error.bias), limit * mean);
         EXPECT_LT(error.rmse, std::sqrt(0.1) * mean); // one hole in ten across a shadow's edge
@@ -111,7 +111,7 @@ TEST_F(HoleFillingTest, StagesTraceFewerPathsAndLeaveLessError) {
         EXPECT_EQ(counts.traced + counts.cascaded + counts.isolated + counts.remembered, counts.holes);
         const std::string text = stages;
         if (text.find("cascade") != std::string::npos) {
-            EXPECT_LT(counts.traced, counts.holes / 2); // the room's boxes hide the same walls from all inner views
+            EXPECT_LT(counts.traced, counts.holes / 2); // the boxes hide the same walls from all inner views
         }
         if (text.find("denoise") != std::string::npos) {
             EXPECT_LT(error_of(grid, converged).rmse, 0.7 * noise);
@@ -121,15 +121,15 @@ TEST_F(HoleFillingTest, StagesTraceFewerPathsAndLeaveLessError) {
 
 TEST_F(HoleFillingTest, PathsThatEndInTheSourceHaveTheSameMean) {
     Stage s = stage(area_lit_room());
-    constexpr std::uint32_t samples = 256; // of the source as well: its illumination must be converged
+    constexpr std::uint32_t samples = 256; // also of the source, whose illumination must have converged
     GridRenderer traced(device(), s.gpu_scene);
     GridRenderer ended(device(), s.gpu_scene);
     render(s, traced, HoleFilling::path_traced(), 0, true, samples);
     render(s, ended, only("source"), 0, true, samples);
     const HoleError error = error_of(ended, traced);
     EXPECT_GT(error.holes, 1000U);
-    // The mean over more than 1000 holes of 256 samples is known to 1 / √256 000 of a pixel's standard deviation, which
-    // is below ten times the mean: 2 %. Taps between source pixels blur, but neither add nor take light.
+    // The mean over more than 1000 holes of 256 samples is known to 1 / √256 000 of a pixel's standard deviation. That
+    // is below ten times the mean, so the error is 2 %. Taps between source pixels blur, but keep the mean light.
     EXPECT_LT(std::abs(error.bias), 0.03 * error.mean);
     RecordProperty("bias", std::to_string(error.bias / error.mean));
 }
@@ -146,7 +146,8 @@ TEST_F(HoleFillingTest, RemembersTheFrameBeforeUntilTheSceneIsCut) {
         first = frame == 0 ? error_of(s.grid, converged).rmse : first;
     }
     EXPECT_LT(s.grid.hole_counts().traced, s.grid.hole_counts().holes / 2);
-    // Eight independent samples would leave 1/√8 = 0.35; α ≥ 0.2 allows 0.33; settled holes have four to five: 0.5.
+    // Eight independent samples would leave 1/√8 = 0.35, and α ≥ 0.2 allows 0.33. Settled holes have four to five
+    // samples, which leave 0.5.
     EXPECT_LT(error_of(s.grid, converged).rmse, 0.6 * first);
     render(s, s.grid, holes, 8, true);
     EXPECT_EQ(s.grid.hole_counts().remembered, 0U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One plane of illumination instead of two, and normals of 8 bits a component: what views made from them look like.
+// Views made from one plane of illumination instead of two, and from normals with 8 bits per component.
 #include "core/image/packing.h"
 #include "core/lightfield/normal_precision.h"
 #include "tests/render/render_test.h"
@@ -14,11 +14,11 @@ constexpr std::uint32_t kHeight = 32;
 
 class LightMergerTest : public RenderTest {
 protected:
-    /// A frame of `camera`, as a client receives it.
+    /// A frame of `camera` as a client receives it.
     SourceFrame make_frame(Stage& s, const Camera& camera = room_camera(kWidth, kHeight)) {
         FrameHeader header = plain_header(camera, 8);
         header.guard_band = {3, 5, 2, 1};
-        header.settings.reflections = false; // they look up light of other pixels
+        header.settings.reflections = false; // reflections would read light of other pixels
         return s.source.render(header).download(kSourceSemantics);
     }
 
@@ -27,7 +27,7 @@ protected:
         EXPECT_TRUE(planes.upload(frame).has_value());
         const LatticeGeometry geometry{{0.06F, 0.06F}};
         views_ =
-            s.grid.render(planes, grid_request(frame.header.source, 2, 2, geometry)); // the first is the source's own
+            s.grid.render(planes, grid_request(frame.header.source, 2, 2, geometry)); // the first view is the source's
         return s.grid.linear_view(0).pixels;
     }
 
@@ -43,7 +43,7 @@ protected:
 };
 
 TEST_F(LightMergerTest, TheSourceLooksTheSameFromOnePlane) {
-    Stage s = stage(cornell_box()); // has diffuse and metallic surfaces
+    Stage s = stage(cornell_box()); // it has diffuse and metallic surfaces
     SourceFrame frame = make_frame(s, cornell_camera(kHeight));
     const Plane light = s.source.total_light();
     EXPECT_EQ(light.semantic, PlaneSemantic::kTotalLight);
@@ -54,10 +54,10 @@ TEST_F(LightMergerTest, TheSourceLooksTheSameFromOnePlane) {
     std::erase_if(frame.planes, [](const Plane& plane) { return is_illumination(plane.semantic); });
     frame.planes.push_back(light);
     const std::vector<glm::vec3> shown = show(s, frame);
-    EXPECT_EQ(discards(), expected_discards) << "light decides nothing";
+    EXPECT_EQ(discards(), expected_discards) << "light must not decide which pixels are reused";
     float brightest = 0.0F;
     for (std::size_t i = 0; i < expected.size(); ++i) {
-        for (int c = 0; c < 3; ++c) { // rounding to 6 mantissa bits, blue to 5, is 2^-6 at most; halves add 2^-11
+        for (int c = 0; c < 3; ++c) { // rounding to 6 mantissa bits (blue 5) errs by at most 2^-6, halves by 2^-11
             ASSERT_NEAR(shown[i][c], expected[i][c], expected[i][c] * 0.0166F + 1e-4F) << i;
             brightest = std::max(brightest, expected[i][c]);
         }
@@ -73,7 +73,7 @@ TEST_F(LightMergerTest, CoarseNormalsDiscardAboutTheSamePixels) {
     const auto normal = std::ranges::find(frame.planes, PlaneSemantic::kNormal, &Plane::semantic);
     *normal = coarse_normals(*normal);
     show(s, frame);
-    // 0.3 points of the pixels is what lossy planes may cost (docs/measurements/codecs.md).
+    // Lossy planes may cost 0.3 percentage points of the pixels (docs/measurements/codecs.md).
     EXPECT_NEAR(discards(), expected, 0.003 * 4 * kWidth * kHeight);
     SourcePlanes planes(device());
     ASSERT_TRUE(planes.upload(frame).has_value());

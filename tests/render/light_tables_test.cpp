@@ -7,7 +7,7 @@
 namespace fieldcast::scene {
 namespace {
 
-/// Two instances of an emissive triangle, one twice as large in each direction; a sun and two lamps.
+/// Two instances of an emissive triangle, one of them twice as large in each direction, a sun, and two lamps.
 Scene lit_scene() {
     Scene scene;
     Material glowing;
@@ -34,7 +34,7 @@ TEST(LightTables, ChooseEmittersByFlux) {
     const LightTables tables = make_light_tables(scene, pose_scene(scene, 0), 1.0F);
     ASSERT_EQ(tables.emitters.size(), 2U);
     EXPECT_THAT(tables.first_emitter, testing::ElementsAre(0U, 1U));
-    EXPECT_FLOAT_EQ(tables.emitters[0].probability, 0.2F); // areas 0.5 and 2 m²
+    EXPECT_FLOAT_EQ(tables.emitters[0].probability, 0.2F); // the areas are 0.5 and 2 m²
     EXPECT_FLOAT_EQ(tables.emitters[1].probability, 0.8F);
     EXPECT_FLOAT_EQ(tables.emitters[1].area_m2, 2.0F);
 }
@@ -72,7 +72,7 @@ TEST(LightTables, CoverAllTexelsABilinearLookUpMixes) {
     scene.environment.width_px = 8;
     scene.environment.height_px = 4;
     scene.environment.pixels.assign(32, glm::vec3(0.0F));
-    scene.environment.pixels[8 + 7] = glm::vec3(1.0F); // row 1, last column: its neighbour on the right is column 0
+    scene.environment.pixels[8 + 7] = glm::vec3(1.0F); // row 1, last column; its right neighbour is column 0
     const LightTables tables = make_light_tables(scene, pose_scene(scene, 0), 1.0F);
     float sum = 0.0F;
     for (std::size_t i = 0; i < 32; ++i) {
@@ -90,7 +90,7 @@ TEST(GgxAlbedo, IsOneForASmoothMirrorAndNeverMore) {
         EXPECT_LE(table[i].x + table[i].y, 1.0F + 1e-5F) << i; // rounding of sums of floats
         EXPECT_GT(table[i].x + table[i].y, 0.3F) << i;         // single scattering at full roughness loses half
     }
-    EXPECT_NEAR(table[31].x + table[31].y, 1.0F, 1e-3F); // roughness 0: nothing is shadowed
+    EXPECT_NEAR(table[31].x + table[31].y, 1.0F, 1e-3F); // roughness 0 has no shadowing
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Direct light against closed forms.
+// Compares direct light with closed forms.
 #include "tests/render/render_test.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 using LightTest = RenderTest;
 
-/// Irradiance at `p` with normal `n` from a polygon of radiance 1 that lies wholly above the horizon.
+/// Irradiance at `p` with normal `n` from a polygon of radiance 1. All of it must be above the horizon.
 /// J. H. Lambert. Photometria. 1760; here as in D. Baum et al. SIGGRAPH 1989, equation 3.
 double polygon_irradiance(const glm::dvec3& p, const glm::dvec3& n, const std::vector<glm::dvec3>& corners) {
     double sum = 0.0;
@@ -22,7 +22,7 @@ double polygon_irradiance(const glm::dvec3& p, const glm::dvec3& n, const std::v
     return 0.5 * std::abs(sum);
 }
 
-/// Where the centre of a pixel sees the plane y = `height_m`.
+/// The point of the plane y = `height_m` that the centre of a pixel shows.
 glm::dvec3 plane_point(const Camera& camera, std::uint32_t x, std::uint32_t y, double height_m) {
     const glm::dvec3 origin(camera.world_from_camera[3]);
     const glm::vec2 pixel(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
@@ -30,7 +30,7 @@ glm::dvec3 plane_point(const Camera& camera, std::uint32_t x, std::uint32_t y, d
     return origin + ray * ((height_m - origin.y) / ray.y);
 }
 
-constexpr float kFloor = 3.0F; // metres: away from the origin, where floats are coarser
+constexpr float kFloor = 3.0F; // metres; away from the origin, where floats are coarser
 constexpr float kAlbedo = 0.5F;
 
 SceneBuilder floor_only() {
@@ -39,7 +39,7 @@ SceneBuilder floor_only() {
     return builder;
 }
 
-/// A light `above_m` over the floor, and a camera beside it that sees the floor below but not the light.
+/// Checks the floor under a light `above_m` over it; the camera beside the light sees the floor only.
 void expect_rectangle_light(const Estimate& image, const Camera& camera, float above_m) {
     const std::vector<glm::dvec3> corners{{-0.3, kFloor + above_m, -0.2},
                                           {0.3, kFloor + above_m, -0.2},
@@ -62,12 +62,12 @@ void expect_rectangle_light(const Estimate& image, const Camera& camera, float a
     const Average mean = average(image);
     EXPECT_NEAR(mean.mean.y, expected_sum / count, 4.5 * mean.standard_error.y + 1e-5);
     EXPECT_LT(mean.standard_error.y, 0.004 * expected_sum / count);
-    // Pixel by pixel: 384 errors have the variance that eight renders each show, within 7 % (√(2/384)); 1.5 is 7 σ.
+    // The variance of 384 pixel errors is that of the eight renders within 7 % (√(2/384)); 1.5 is 7 σ.
     EXPECT_LT(squares / variances, 1.5);
 }
 
 TEST_F(LightTest, RectangleLightGivesLambertsIrradiance) {
-    for (const float above_m : {1.0F, 0.05F}) { // the near one is where shadow rays end too late
+    for (const float above_m : {1.0F, 0.05F}) { // the near light would reveal shadow rays that end too late
         SceneBuilder builder = floor_only();
         builder.add(rectangle({0, kFloor + above_m, 0}, {0.3F, 0, 0}, {0, 0, 0.2F}),
                     builder.add_material(emitter(glm::vec3(10.0F))));
@@ -88,7 +88,7 @@ TEST_F(LightTest, EmissionIsOneSidedUnlessTheMaterialIsDoubleSided) {
         scene::Material material = emitter(glm::vec3(10.0F));
         material.double_sided = both;
         builder.add(rectangle({0, kFloor + 1.0F, 0}, {0.3F, 0, 0}, {0, 0, -0.2F}),
-                    builder.add_material(material)); // up
+                    builder.add_material(material)); // its front faces up
         const Camera camera = look_at({0, kFloor + 0.8F, 1.0F}, {0, kFloor, 0}, 0.7F, 24, 16);
         const Estimate image = path_trace(builder.scene(), camera, {.samples = 32, .renders = 8, .max_bounces = 1});
         if (both) {
@@ -99,7 +99,7 @@ TEST_F(LightTest, EmissionIsOneSidedUnlessTheMaterialIsDoubleSided) {
     }
 }
 
-/// Floor seen from above; what one light does to it.
+/// A floor under one light, seen from above.
 class PunctualTest : public RenderTest {
 protected:
     void expect(const scene::Light& light, const glm::mat4& place, const auto& irradiance, double tolerance = 2e-4) {
@@ -110,7 +110,7 @@ protected:
         for (std::uint32_t y = 0; y < 16; ++y) {
             for (std::uint32_t x = 0; x < 16; ++x) {
                 const double expected = kAlbedo / glm::pi<double>() * irradiance(plane_point(camera, x, y, kFloor));
-                // No noise: one light, one direction. Rounding of a few float operations.
+                // One light from one direction has no noise; a few float operations round.
                 EXPECT_NEAR(image.mean[image.index(x, y)].y, expected, tolerance * expected + 1e-6) << x << " " << y;
             }
         }
@@ -136,7 +136,7 @@ TEST_F(PunctualTest, PointLightWithRange) {
     light.type = scene::LightType::kPoint;
     light.intensity = glm::vec3(5.0F);
     light.range_m = 2.0F;
-    // KHR_lights_punctual: max(min(1 − (d / range)⁴, 1), 0) / d². The window amplifies rounding where it is near 0.
+    // KHR_lights_punctual: max(min(1 − (d / range)⁴, 1), 0) / d². Rounding matters more where the window is near 0.
     expect(
         light, at(glm::vec3(lamp_)),
         [&](const glm::dvec3& p) {
@@ -153,7 +153,7 @@ TEST_F(PunctualTest, SpotLight) {
     light.inner_cone_rad = 0.3F;
     light.outer_cone_rad = 0.7F;
     const glm::dvec3 axis = glm::normalize(glm::dvec3(-0.4, -1.0, 0.3));
-    // KHR_lights_punctual: saturate(cos θ · scale + offset)², 1 at the inner and 0 at the outer cone.
+    // KHR_lights_punctual: saturate(cos θ · scale + offset)², which is 1 at the inner and 0 at the outer cone.
     expect(
         light, facing(glm::vec3(lamp_), glm::vec3(axis)),
         [&](const glm::dvec3& p) {
@@ -171,7 +171,7 @@ TEST_F(PunctualTest, DirectionalLight) {
         scene::Light light;
         light.intensity = glm::vec3(2.0F);
         light.angular_radius_rad = radius;
-        // A disc averages cos θ over its directions, 1 − r²/4 of the centre's; four samples do not average it fully.
+        // A disc averages cos θ over its directions: 1 − r²/4 of the centre's. Four samples do not average it fully.
         expect(
             light, facing({}, glm::vec3(towards)), [&](const glm::dvec3&) { return 2.0 * -towards.y; },
             radius > 0.01F ? 0.05 : 2e-3);

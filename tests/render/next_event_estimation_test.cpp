@@ -7,8 +7,8 @@
 namespace fieldcast::render {
 namespace {
 
-/// A scene lit by a textured sky, a double-sided emitter with a texture and a large emissive ball only, with diffuse,
-/// glossy, metallic and thin glass surfaces.
+/// A scene with diffuse, glossy, metallic and thin glass surfaces. Its lights are a textured sky, a double-sided
+/// emitter with a texture, and a large emissive ball.
 SceneBuilder mixed_scene() {
     SceneBuilder builder;
     scene::Environment& sky = builder.environment();
@@ -85,7 +85,7 @@ TEST_F(NextEventEstimationTest, ChoosingLightSamplesDoesNotChangeTheMean) {
     }
 }
 
-/// Many lamps of equal power, each of which reaches its own part of the floor only.
+/// Many lamps of equal power, each of which lights only its part of the floor.
 TEST_F(NextEventEstimationTest, CandidatesLowerTheVarianceOfManyLights) {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, -4}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -105,7 +105,7 @@ TEST_F(NextEventEstimationTest, CandidatesLowerTheVarianceOfManyLights) {
         }
         return sum;
     };
-    // One of 64 lamps gives most of a point's light: eight candidates meet it eight times as often.
+    // One of 64 lamps gives most of a point's light; eight candidates include it eight times as often.
     EXPECT_LT(variance(8), 0.4 * variance(1));
 }
 
@@ -120,19 +120,19 @@ TEST_F(NextEventEstimationTest, LowersTheVariance) {
         }
         return sum;
     };
-    // A light of 1.44 m² in a room of 22 m² is met by one bounce in about 20; measured: a factor of 10 and more.
+    // One bounce in about 20 hits a light of 1.44 m² in a room of 22 m²; the measured factor is 10 and more.
     EXPECT_LT(variance(true), 0.25 * variance(false));
 }
 
-/// Mean squared error against the limit of many samples falls faster than 1/n with well distributed samples.
+/// With well distributed samples, the mean squared error falls faster than 1/n.
 TEST_F(NextEventEstimationTest, SamplesOfAPixelAreWellDistributed) {
-    // Irradiance of a rectangle light without occluders, one bounce: a smooth two-dimensional integrand, where 64
-    // scrambled Sobol points are far better than independent ones.
+    // With one bounce, the irradiance of an unoccluded rectangle light has a smooth two-dimensional integrand. For it,
+    // 64 scrambled Sobol points are far better than independent ones.
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
     builder.add(rectangle({0, 2, 0}, {0.7F, 0, 0}, {0, 0, 0.7F}), builder.add_material(emitter(glm::vec3(5.0F))));
     const Camera camera = look_at({0, 1.5F, 0.5F}, {0, 0, 0}, 0.5F, 16, 16);
-    const auto variance = [&](std::uint32_t samples) { // of one render
+    const auto variance = [&](std::uint32_t samples) { // variance of one render
         const Estimate image =
             path_trace(builder.scene(), camera, {.samples = samples, .renders = 8, .max_bounces = 1});
         double sum = 0.0;
@@ -143,7 +143,7 @@ TEST_F(NextEventEstimationTest, SamplesOfAPixelAreWellDistributed) {
     };
     const double falls = variance(1) / variance(64);
     RecordProperty("variance_1_over_64", std::to_string(falls));
-    EXPECT_GT(falls, 150.0); // independent samples: 64
+    EXPECT_GT(falls, 150.0); // independent samples would give 64
 }
 
 } // namespace

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kSize = 48;
 
-/// A board over a floor, in a sun and under a noisy sky of one small bright spot: a shadow with an edge.
+/// A board over a floor, lit by a sun and a noisy sky with one small bright spot. Its shadow has a sharp edge.
 scene::Scene sunlit_floor() {
     SceneBuilder builder;
     scene::Environment& sky = builder.environment();
@@ -47,7 +47,7 @@ public:
         return image::unpack_plane(renderer_.render(header).download(wanted).planes.front());
     }
 
-    /// After `frames` frames at rest.
+    /// Light after `frames` frames without motion.
     std::vector<glm::vec3> render_frames(std::uint32_t frames, bool is_apart, bool accumulates = false) {
         std::vector<glm::vec3> light;
         for (std::uint32_t frame = 0; frame < frames; ++frame) {
@@ -103,7 +103,7 @@ TEST_F(PunctualFilterTest, KeepsShadowsSharpUnderANoisySky) {
     EXPECT_NEAR(mean(apart), mean(truth), 0.02 * mean(truth)); // eight samples of the sky in each of 2304 pixels
 }
 
-// Frames that are averaged without a filter have all light as well: those before and after do not show it twice.
+// Averaged frames without filter must have all light, and the frames before and after must not show it twice.
 TEST_F(PunctualFilterTest, StillFramesHaveAllLight) {
     const scene::Scene scene = sunlit_floor();
     Floor floor(device(), scene, traversal());
@@ -119,7 +119,7 @@ TEST_F(PunctualFilterTest, StillFramesHaveAllLight) {
     EXPECT_NEAR(mean(floor.render(moved)), mean(truth), 0.02 * mean(truth));
 }
 
-// One renderer, first with one light sample for all kinds, then with one for each: no light counts twice.
+// The renderer changes from one light sample for all kinds to one for each kind; no light may count twice.
 TEST_F(PunctualFilterTest, OtherSettingsStartAnew) {
     const scene::Scene scene = sunlit_floor();
     Floor floor(device(), scene, traversal());
@@ -128,7 +128,7 @@ TEST_F(PunctualFilterTest, OtherSettingsStartAnew) {
     FrameHeader next = Floor::header(true);
     next.cut = false;
     next.frame_id = next.noise_frame = 4;
-    EXPECT_NEAR(mean(floor.render(next)), expected, 0.05 * expected); // one frame
+    EXPECT_NEAR(mean(floor.render(next)), expected, 0.05 * expected); // the noise of one frame
 }
 
 } // namespace

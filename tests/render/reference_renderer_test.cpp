@@ -22,7 +22,7 @@ TEST_F(ReferenceRendererTest, GoesOnWithAnImageThatWasKept) {
     const std::vector<glm::vec3> expected = whole.image();
     const std::vector<glm::vec3> actual = continued.image();
     for (std::size_t i = 0; i < expected.size(); ++i) {
-        // The sum goes through a mean and back: two roundings of floats.
+        // The sum is converted to a mean and back, which rounds floats twice.
         EXPECT_NEAR(actual[i].y, expected[i].y, 1e-6F * expected[i].y + 1e-7F) << i;
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth surfaces in views away from the source, against the same views path traced.
+// Compares smooth surfaces in views away from the source with the same views path traced.
 #include "tests/render/render_test.h"
 
 #include <cmath>
@@ -13,7 +13,7 @@ constexpr LatticeGeometry kGeometry{{0.12F, 0.12F}};
 
 enum class Shape { kFloor, kBall };
 
-/// Name, reflecting shape and roughness, and the most of the error that may be left of that without reflections.
+/// Name, reflecting shape and roughness, and the largest allowed ratio of the errors with and without reflections.
 struct Case {
     const char* name;
     Shape shape;
@@ -21,7 +21,7 @@ struct Case {
     double left;
 };
 
-/// A smooth floor before a wall of glowing stripes, or a smooth ball in a sky of light and dark squares.
+/// A smooth floor in front of a wall of emissive stripes, or a smooth ball in a sky of light and dark squares.
 scene::Scene smooth_scene(const Case& test) {
     SceneBuilder builder;
     const std::uint32_t smooth = builder.add_material(metal(glm::vec3(0.9F), test.roughness));
@@ -48,7 +48,7 @@ scene::Scene smooth_scene(const Case& test) {
     return builder.scene();
 }
 
-/// Of the source and of the truth: what is mirrored, and what lights nothing else.
+/// Settings of source and reference: one bounce shows the mirrored surface and adds no other light.
 RenderSettings settings() {
     RenderSettings settings = plain_header(look_at({}, {0, 0, -1}, 1.0F, 8, 8), 256).settings;
     settings.max_bounces = 1;
@@ -57,7 +57,7 @@ RenderSettings settings() {
 
 class ReflectionsTest : public RenderTest, public testing::WithParamInterface<Case> {
 protected:
-    /// RMSE of a corner view on the smooth surface, of the displayed values.
+    /// RMSE of the displayed values of a corner view, on the smooth surface.
     double error(Stage& s, const Camera& camera, bool reflections, const std::vector<glm::vec3>& truth) const {
         FrameHeader header = plain_header(camera, 256);
         header.settings = settings();
@@ -96,7 +96,7 @@ TEST_P(ReflectionsTest, AreWhereEachViewSeesThem) {
     const double following = error(s, camera, true, truth);
     RecordProperty("sticking", std::to_string(sticking));
     RecordProperty("following", std::to_string(following));
-    EXPECT_GT(sticking, 0.05); // parallax of several pixels in a picture of bold stripes: there is something to gain
+    EXPECT_GT(sticking, 0.05); // several pixels of parallax in bold stripes: there must be an error to reduce
     EXPECT_LT(following, test.left * sticking);
 }
 

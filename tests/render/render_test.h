@@ -9,12 +9,12 @@
 
 namespace fieldcast::render {
 
-/// Mean of independent renders of one view, and how well it is known.
+/// Mean of independent renders of one view, and its variance.
 struct Estimate {
     std::uint32_t width_px = 0;
     std::uint32_t height_px = 0;
     std::vector<glm::dvec3> mean;
-    std::vector<glm::dvec3> variance; ///< of `mean`, from the spread of the renders
+    std::vector<glm::dvec3> variance; ///< variance of `mean`, from the spread of the renders
 
     std::size_t index(std::uint32_t x, std::uint32_t y) const { return static_cast<std::size_t>(y) * width_px + x; }
 };
@@ -29,9 +29,10 @@ Average average(const Estimate& estimate, std::uint32_t x0, std::uint32_t y0, st
                 std::uint32_t height);
 Average average(const Estimate& estimate);
 
+/// Options of RenderTest::path_trace().
 struct PathTracing {
-    std::uint32_t samples = 16; ///< per pixel and render
-    std::uint32_t renders = 4;  ///< with different seeds
+    std::uint32_t samples = 16; ///< samples per pixel and render
+    std::uint32_t renders = 4;  ///< number of renders with different seeds
     std::uint32_t max_bounces = 8;
     bool next_event_estimation = true;
     LightSampling light_sampling = LightSampling::plain();
@@ -40,8 +41,8 @@ struct PathTracing {
 /// Tests of renderers on the best device of this machine; skips without one, fails on validation messages.
 class RenderTest : public gpu::GpuTest {
 public:
-    /// Shows a scene in one renderer of each kind. Views are traced, as their references are: in rooms that are symmetric
-    /// about the camera, whole rows of pixels have their centres on edges, where drawing may see the other side.
+    /// A scene in one renderer of each kind. Views are traced, as their references are. In rooms that are symmetric
+    /// about the camera, the centres of whole rows of pixels lie on edges, where a rasteriser may show the other side.
     struct Stage {
         Stage(const gpu::Device& device, scene::Scene shown, scene::Traversal traversal)
             : scene(std::move(shown)), gpu_scene(device, scene, traversal, scene::VisibilityMethod::kRays), source(device, gpu_scene),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Histories of the source, and the planes that a client rebuilds.
+// The source's history, and the planes that a client rebuilds.
 #include "core/image/packing.h"
 #include "tests/render/render_test.h"
 
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> ids(const SourcePlanes& planes) {
     return result;
 }
 
-/// Mean over pixels of half the squared difference of two images: the variance of one.
+/// Variance of one image: the mean over pixels of half the squared difference of two images.
 double variance_between(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -64,12 +64,12 @@ TEST_F(SourceRendererTest, AccumulationLowersTheVarianceAsItsAlphaSays) {
             (frame == 0 ? first : last)[run] = diffuse_light(planes);
         }
     }
-    // Independent frames: α / (2 − α) = 1/9 of one frame's variance. The frames continue each pixel's Sobol sequence,
-    // which can only lower that; heavy tails and the precision of the planes allow 40 % more.
+    // Independent frames leave α / (2 − α) = 1/9 of one frame's variance. The frames continue each pixel's Sobol
+    // sequence, which can only lower it; 40 % allow for heavy tails and the precision of the planes.
     const double ratio = variance_between(last[0], last[1]) / variance_between(first[0], first[1]);
     RecordProperty("variance_ratio", std::to_string(ratio));
     EXPECT_LT(ratio, 1.4 / 9.0);
-    EXPECT_GT(ratio, 0.02); // 20 frames cannot do better than 1/20 much: the images must still be different
+    EXPECT_GT(ratio, 0.02); // 20 frames cannot go far below 1/20; the two images must still differ
 }
 
 TEST_F(SourceRendererTest, ACutForgetsAllHistory) {
@@ -88,7 +88,7 @@ TEST_F(SourceRendererTest, ACutForgetsAllHistory) {
         const SourceFrame expected = fresh.render(header).download(kSourceSemantics);
         EXPECT_EQ(renderer.render(header).download(kSourceSemantics).planes, expected.planes);
     }
-    header.cut = false; // and without a cut the history counts
+    header.cut = false; // without a cut the history is used
     header.frame_id = 5;
     header.noise_frame = 5;
     SourceRenderer newer(device(), gpu_scene);
@@ -151,7 +151,7 @@ TEST_F(SourceRendererTest, WhatAMovingObjectUncoversHasNoHistory) {
         for (std::uint32_t y = 1; frame > 0 && y + 1 < kHeight; ++y) {
             for (std::uint32_t x = 1; x + 1 < kWidth; ++x) {
                 const std::size_t i = std::size_t{y} * kWidth + x;
-                std::set<std::uint32_t> around; // what the camera, which stands still, saw here
+                std::set<std::uint32_t> around; // surfaces that the static camera saw around this pixel
                 for (std::uint32_t k = 0; k < 9; ++k) {
                     around.insert(before[(y + k / 3 - 1) * kWidth + x + k % 3 - 1]);
                 }
@@ -165,7 +165,7 @@ TEST_F(SourceRendererTest, WhatAMovingObjectUncoversHasNoHistory) {
         before = now;
     }
     EXPECT_GT(uncovered, 5U);
-    EXPECT_GT(followed, 100U); // the box takes its history along
+    EXPECT_GT(followed, 100U); // the history follows the box
 }
 
 TEST_F(SourceRendererTest, RebuiltSurfacePlanesAreTheSourcesBits) {
@@ -197,12 +197,12 @@ TEST_F(SourceRendererTest, AveragesFramesWhileNothingMoves) {
     header.settings.accumulate = true;
     header.settings.denoiser = Denoiser::kSvgfPlus;
     header.settings.temporal_accumulation = true;
-    header.settings.indirect_clamp = 1.0F; // which would take light
+    header.settings.indirect_clamp = 1.0F; // the clamp would remove light
     s.reference.start(camera);
     RenderSettings unbiased = plain_header(camera, 1024).settings;
     s.reference.accumulate(unbiased, 99);
     const std::vector<glm::vec3> expected = s.reference.image();
-    const auto error = [&] { // RMS difference and difference of the means, over the mean
+    const auto error = [&] { // RMS difference, and difference of the means, over the mean
         const LinearView view = s.grid.linear_view(0);
         double squared = 0.0;
         double sum = 0.0;
@@ -221,11 +221,11 @@ TEST_F(SourceRendererTest, AveragesFramesWhileNothingMoves) {
         header.noise_frame = frame;
         s.gpu_scene.pose(0, header.cut);
         const SourcePlanes& planes = s.source.render(header);
-        EXPECT_EQ(planes.header().still_frames, frame); // the first frame does not know that nothing moves
+        EXPECT_EQ(planes.header().still_frames, frame); // the first frame is not known to be still
         s.grid.render(planes, request);
         first = frame == 1 ? error().x : first;
     }
-    // 256 samples have a sixteenth of one sample's error; the reference's own adds an eighth of that, wire precision
+    // 256 samples have a sixteenth of one sample's error. The reference's error adds an eighth of that, wire precision
     // (2^-7 in the worst case) the rest.
     EXPECT_LT(error().x, first / 16.0 * 1.3 + 0.008);
     EXPECT_LT(error().y, 0.01);
@@ -251,7 +251,7 @@ std::vector<glm::vec3> block_means(const std::vector<glm::vec3>& pixels, std::ui
     return means;
 }
 
-/// A floor under a wide lamp with something in between: direct light only, with soft shadows.
+/// A floor under a wide lamp with an occluder in between, for direct light with soft shadows.
 scene::Scene floor_under_a_lamp() {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {3, 0, 0}, {0, 0, -3}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -272,7 +272,7 @@ TEST_F(SourceRendererTest, NeighboursComplementOneAnother) {
         header.seed = seed;
         return diffuse_light(renderer.render(header));
     };
-    const auto variances = [&](Sampler sampler) { // of pixels, and of blocks of them
+    const auto variances = [&](Sampler sampler) { // variances of pixels and of blocks of pixels
         double pixels = 0.0;
         double blocks = 0.0;
         for (std::uint32_t run = 0; run < 4; ++run) {
@@ -287,12 +287,12 @@ TEST_F(SourceRendererTest, NeighboursComplementOneAnother) {
     const auto together = variances(Sampler::kZSobol);
     RecordProperty("alone", std::to_string(alone.second / alone.first));
     RecordProperty("together", std::to_string(together.second / together.first));
-    EXPECT_NEAR(together.first / alone.first, 1.0, 0.15); // each pixel by itself is as noisy
+    EXPECT_NEAR(together.first / alone.first, 1.0, 0.15); // a single pixel is equally noisy
     EXPECT_NEAR(alone.second / alone.first, 1.0 / 16.0, 0.02);
     EXPECT_LT(together.second, 0.6 * alone.second);
 }
 
-/// Light of a frame of `samples` that replaces all history, after one of 512 samples with numbers of its own.
+/// Light of a frame of `samples` that replaces all history, after a frame of 512 samples with other random numbers.
 std::vector<glm::vec3> light_after_a_good_frame(SourceRenderer& renderer, std::uint32_t samples, bool history_light,
                                                 std::uint32_t max_bounces = 8) {
     FrameHeader header = plain_header(room_camera(kWidth, kHeight), 512);
@@ -308,7 +308,7 @@ std::vector<glm::vec3> light_after_a_good_frame(SourceRenderer& renderer, std::u
     return diffuse_light(renderer.render(header));
 }
 
-/// What only paths of more than one bounce have: those of the same numbers see the same light at their first surface.
+/// Light of paths with more than one bounce. Paths of equal random numbers see equal light at their first surface.
 std::vector<glm::vec3> indirect_after_a_good_frame(SourceRenderer& renderer, std::uint32_t samples,
                                                    bool history_light) {
     std::vector<glm::vec3> light = light_after_a_good_frame(renderer, samples, history_light);
@@ -330,18 +330,18 @@ TEST_F(SourceRendererTest, PathsThatEndInTheFrameBeforeHaveTheSameMeanAndLessNoi
     const scene::GpuScene gpu_scene(device(), scene, traversal());
     SourceRenderer renderer(device(), gpu_scene);
     const std::vector<glm::vec3> truth = light_after_a_good_frame(renderer, 512, false);
-    // 786,432 samples each are known to 0.1 %. Light of the nearest pixel instead of the point's, and paths that go on
-    // for longer than eight bounces, are the rest.
+    // The means of 786,432 samples each are known to 0.1 %. The rest is light of the nearest pixel instead of the
+    // point's, and paths that continue beyond eight bounces.
     const glm::dvec3 ratio = mean_of(light_after_a_good_frame(renderer, 512, true)) / mean_of(truth);
     for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(ratio[c], 1.0, 0.005) << c; // measured 1.0011
+        EXPECT_NEAR(ratio[c], 1.0, 0.005) << c; // the measured ratio is 1.0011
     }
     const std::vector<glm::vec3> indirect = indirect_after_a_good_frame(renderer, 512, false);
     const double without = variance_between(indirect_after_a_good_frame(renderer, 1, false), indirect);
     const double with = variance_between(indirect_after_a_good_frame(renderer, 1, true), indirect);
     RecordProperty("mean_ratio", std::to_string(ratio.y));
     RecordProperty("variance_ratio", std::to_string(with / without));
-    EXPECT_LT(with, 0.8 * without); // measured 0.70: what is left is in which directions a path goes on
+    EXPECT_LT(with, 0.8 * without); // measured 0.70; the directions of paths keep their noise
 }
 
 TEST_F(SourceRendererTest, PathsDoNotEndInAFrameBeforeACut) {
@@ -375,7 +375,7 @@ TEST_F(SourceRendererTest, SamplersAgreeInTheMean) {
     };
     const glm::dvec3 ratio = mean(Sampler::kZSobol) / mean(Sampler::kSobol);
     for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(ratio[c], 1.0, 0.005); // 786,432 samples each: a standard error of 0.1 %
+        EXPECT_NEAR(ratio[c], 1.0, 0.005); // 786,432 samples each have a standard error of 0.1 %
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals and textures as the planes of a source and emission show them.
+// Normals in the planes of a source, and textures in emission.
 #include "core/image/packing.h"
 #include "core/image/transfer.h"
 #include "tests/render/render_test.h"
@@ -12,7 +12,7 @@ namespace {
 
 class SurfaceTest : public RenderTest {
 protected:
-    /// Shading normals that a camera sees; a pixel without surface has length 0.
+    /// Shading normals in a camera's pixels; zero in pixels without surface.
     std::vector<glm::vec3> normals(const scene::Scene& scene, const Camera& camera) const {
         const scene::GpuScene gpu_scene(device(), scene, traversal());
         FrameHeader header = plain_header(camera, 1);
@@ -49,12 +49,12 @@ TEST_F(SurfaceTest, NormalsOfScaledAndMirroredInstancesAreThoseOfTheEllipsoid) {
             const float b = glm::dot(origin, ray);
             const float inside = b * b - a * (glm::dot(origin, origin) - 1.0F);
             if (inside < 0.05F * a) {
-                continue; // missed, or a silhouette, where the viewer bends normals
+                continue; // no hit, or a silhouette, where normals are bent towards the viewer
             }
             const glm::vec3 p = origin + ray * ((-b - std::sqrt(inside)) / a);
             const glm::vec3 expected = glm::normalize(glm::vec3(glm::transpose(object_from_world) * glm::vec4(p, 0)));
-            // 128 slices are 2.8° wide; interpolated normals and their faces' positions differ from the ellipsoid's by
-            // much less than half of that: 1°.
+            // 128 slices are 2.8° wide. Interpolated normals and the faces' positions differ from the ellipsoid's by
+            // much less than half of that, so 1° is enough.
             EXPECT_GT(glm::dot(seen[i], expected), std::cos(glm::radians(1.0F))) << i << " scale " << scale.x;
             ++checked;
         }
@@ -62,17 +62,17 @@ TEST_F(SurfaceTest, NormalsOfScaledAndMirroredInstancesAreThoseOfTheEllipsoid) {
     }
 }
 
-/// How a rectangle is mapped and placed.
+/// Texture mapping and transform of a rectangle.
 struct Mapping {
     bool mirrored_u = false;
     bool mirrored_v = false;
     bool has_tangents = false;
     bool mirrored_instance = false;
-    bool second_set = false; ///< the other one is constant
+    bool second_set = false; ///< uses the second set of coordinates; the other one is constant
 };
 
 TEST_F(SurfaceTest, GreenOfANormalMapIsUpInTheImage) {
-    // The map's one texel leans to the right and, more, up (as the image is seen): (0.36, 0.48, 0.8).
+    // The map's only texel leans right and, more, up, as seen in the image: (0.36, 0.48, 0.8).
     const std::vector<std::uint8_t> texel{173, 189, 230, 255};
     const glm::vec3 lean = glm::normalize(glm::vec3(173, 189, 230) / 127.5F - 1.0F);
     for (int bits = 0; bits < 32; ++bits) {
@@ -91,14 +91,14 @@ TEST_F(SurfaceTest, GreenOfANormalMapIsUpInTheImage) {
         }
         const float u_sign = mapping.mirrored_u ? -1.0F : 1.0F;  // world x per u
         const float up_sign = mapping.mirrored_v ? -1.0F : 1.0F; // world y per −v
-        if (mapping.has_tangents) { // as MikkTSpace gives them: bitangent = w · n × t is the image's up
+        if (mapping.has_tangents) { // as from MikkTSpace: bitangent = w · n × t is upwards in the image
             mesh.tangents.assign(4, glm::vec4(u_sign, 0, 0, u_sign * up_sign));
         }
         const float x_sign = mapping.mirrored_instance ? -1.0F : 1.0F;
         builder.add(mesh, builder.add_material(material), glm::scale(glm::mat4(1.0F), glm::vec3(x_sign, 1, 1)));
         const glm::vec3 expected(x_sign * u_sign * lean.x, up_sign * lean.y, lean.z);
         const glm::vec3 seen = normals(builder.scene(), look_at({0, 0, 3}, {0, 0, 0}, 0.2F, 3, 3))[4];
-        // Octahedral encoding: 0.004°.
+        // Octahedral encoding errs by 0.004°.
         EXPECT_GT(glm::dot(seen, expected), std::cos(glm::radians(0.02F)))
             << "case " << bits << ": " << seen.x << " " << seen.y << " " << seen.z;
     }
@@ -117,10 +117,10 @@ TEST_F(SurfaceTest, NormalScaleFlattensTheMap) {
 }
 
 TEST_F(SurfaceTest, NormalsNeverFaceAwayFromTheViewer) {
-    // A steep normal map seen at a grazing angle.
+    // A steep normal map is seen at a grazing angle.
     SceneBuilder builder;
     scene::Material material = diffuse(glm::vec3(0.5F));
-    material.normal.texture = builder.add_texture(1, {128, 20, 160, 255}); // leans down the image, away from the viewer
+    material.normal.texture = builder.add_texture(1, {128, 20, 160, 255}); // leans down, away from the viewer
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, 5}), builder.add_material(material));
     const Camera camera = look_at({0, -0.5F, 4}, {0, 0, 0}, 0.5F, 8, 8);
     std::size_t checked = 0;
@@ -131,7 +131,7 @@ TEST_F(SurfaceTest, NormalsNeverFaceAwayFromTheViewer) {
         if (glm::length(seen[i]) > 0.5F) {
             EXPECT_LT(glm::dot(seen[i], ray), 0.0F) << i;
             EXPECT_LT(glm::reflect(ray, seen[i]).y, 1e-3F)
-                << i; // mirrored away from the surface, which is seen from below
+                << i; // reflected away from the surface, which is seen from below
             ++checked;
         }
     }
@@ -161,7 +161,7 @@ std::int32_t wrapped_texel(std::int32_t i, scene::Wrap wrap) {
     return 0;
 }
 
-/// Bilinear look-up as glTF defines it, in linear light.
+/// Bilinear lookup as glTF defines it, in linear light.
 glm::dvec3 look_up(const std::vector<std::uint8_t>& rgba, glm::dvec2 uv, scene::Wrap wrap_u, scene::Wrap wrap_v) {
     const glm::dvec2 at = uv * 8.0 - 0.5;
     const glm::dvec2 low = glm::floor(at);
@@ -182,7 +182,7 @@ glm::dvec3 look_up(const std::vector<std::uint8_t>& rgba, glm::dvec2 uv, scene::
 }
 
 TEST_F(SurfaceTest, TexturesWrapAndTransformAsInGltf) {
-    constexpr std::uint32_t kSize = 96; // pixels over 3 repetitions of 8 texels: always magnified, level 0
+    constexpr std::uint32_t kSize = 96; // pixels over 3 repetitions of 8 texels: always magnified, so mip level 0
     const std::vector<std::uint8_t> card = test_card();
     struct Case {
         scene::Wrap u, v;
@@ -208,7 +208,7 @@ TEST_F(SurfaceTest, TexturesWrapAndTransformAsInGltf) {
         }
         builder.add(mesh, builder.add_material(material));
         const Camera camera =
-            look_at({0, 0, 4}, {0, 0, 0}, 2.0F * std::atan(0.25F), kSize, kSize); // exactly the rectangle
+            look_at({0, 0, 4}, {0, 0, 0}, 2.0F * std::atan(0.25F), kSize, kSize); // shows exactly the rectangle
         const Estimate image = path_trace(builder.scene(), camera, {.samples = 1, .renders = 1, .max_bounces = 1});
         std::size_t wrong = 0;
         for (std::uint32_t y = 0; y < kSize; ++y) {

@@ -25,22 +25,22 @@ protected:
 };
 
 TEST_P(SvgfTest, ConstantIlluminationPassesUnchanged) {
-    // Convex shapes in a constant sky, above no ground: every sample of every visible point is 1.
+    // For convex shapes in a constant sky without ground, every sample of every visible point is 1.
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
     builder.add(box({-0.5F, 0, 0}, glm::vec3(0.3F)), builder.add_material(diffuse({0.8F, 0.2F, 0.1F})));
     builder.add(rectangle({0, 0, -1}, {2, 0, 0}, {0, 2, 0}), builder.add_material(diffuse({0.1F, 0.2F, 0.8F})));
     scene::Scene scene = builder.scene();
-    scene.instances.pop_back(); // the box alone
+    scene.instances.pop_back(); // only the box remains
     for (const glm::vec3& pixel :
          light(scene, look_at({0.2F, 0.4F, 2}, {-0.4F, 0, 0}, 0.6F, kSize, kSize), GetParam())) {
-        // Sky pixels stay 0; the rest are weighted means of numbers that differ by rounding.
+        // Sky pixels stay 0. Other pixels are weighted means of numbers that differ by rounding.
         EXPECT_TRUE(pixel.y == 0.0F || std::abs(pixel.y - 1.0F) < 0.01F) << pixel.y;
     }
 }
 
 TEST_P(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
-    // A roof of two slopes under a directional light: two exact, different values side by side.
+    // A roof of two slopes under a directional light shows two exact, different values side by side.
     SceneBuilder builder;
     builder.add(rectangle({-1, 0, 0}, {1, 0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
     builder.add(rectangle({1, 0, 0}, {1, -0.5F, 0}, {0, 0, -2}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -57,7 +57,7 @@ TEST_P(SvgfTest, EdgesBetweenInstancesAndOrientationsStay) {
     ASSERT_GT(std::abs(expected.x - expected.y), 0.3F);
     for (std::uint32_t x = 0; x < kSize; ++x) {
         const float value = filtered[std::size_t{kSize} * (kSize / 2) + x].y;
-        // R11G11B10F: 2^-7.
+        // The precision of R11G11B10F is 2^-7.
         EXPECT_NEAR(value, x < kSize / 2 ? expected.x : expected.y, 0.01F) << x;
     }
 }
@@ -80,14 +80,14 @@ TEST_P(SvgfTest, NoiseOnAPlaneFallsByTheFilter) {
     const auto noisy = relative_spread(light(builder.scene(), camera, Denoiser::kNone));
     const auto smooth = relative_spread(light(builder.scene(), camera, GetParam()));
     RecordProperty("spread", std::to_string(noisy.second) + " to " + std::to_string(smooth.second));
-    // 7×7 pixels, then five levels that reach 62 pixels: far more than 49 pixels go into each, 1/7 of the spread.
-    // What the light itself varies over the image (2 %) remains.
+    // 7×7 pixels and then five levels that reach 62 pixels average far more than 49 pixels, which leaves at most 1/7 of
+    // the spread. The variation of the light itself over the image (2 %) remains.
     EXPECT_LT(smooth.second, noisy.second / 7.0 + 0.02);
     EXPECT_NEAR(smooth.first, noisy.first,
-                4.5 * noisy.second / kSize * noisy.first); // the mean stays, 4.5 standard errors
+                4.5 * noisy.second / kSize * noisy.first); // the mean must stay within 4.5 standard errors
 }
 
-// A light that jumps, without noise: how much of the old light is left in the middle of the picture eight frames later.
+// A lamp jumps, without noise. Measures the share of its old light in the middle of the image eight frames later.
 TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
     SceneBuilder builder;
     builder.add(rectangle({0, 0, 0}, {5, 0, 0}, {0, 0, -5}), builder.add_material(diffuse(glm::vec3(0.5F))));
@@ -96,7 +96,7 @@ TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
     lamp.intensity = glm::vec3(3.0F);
     builder.add_light(lamp, at({0, 1, 0}));
     scene::Scene scene = builder.scene();
-    scene.nodes.back() = {}; // its place comes from the animation
+    scene.nodes.back() = {}; // the animation gives its position
     scene.nodes.back().is_animated = true;
     scene::AnimationChannel channel;
     channel.node = static_cast<std::uint32_t>(scene.nodes.size() - 1);
@@ -107,7 +107,7 @@ TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
     scene::GpuScene gpu_scene(device(), scene, traversal());
     SourceRenderer renderer(device(), gpu_scene);
     std::vector<double> middle;
-    for (std::uint32_t frame = 0; frame < 48; ++frame) { // 40 before the jump: longer than any history
+    for (std::uint32_t frame = 0; frame < 48; ++frame) { // 40 before the jump, which is longer than any history
         FrameHeader header = plain_header(look_at({0, 3, 0.5F}, {0, 0, 0}, 0.4F, kSize, kSize), 1);
         header.frame_id = header.noise_frame = frame;
         header.cut = frame == 0;
@@ -121,10 +121,10 @@ TEST_P(SvgfTest, HistoryFollowsLightThatChanges) {
         middle.push_back(static_cast<double>(light[std::size_t{kSize} * kSize / 2 + kSize / 2].y));
     }
     const double before = middle[39];
-    const double after = before / 4; // twice as far
+    const double after = before / 4; // the lamp is twice as far away
     const double left = (middle.back() - after) / (before - after);
     RecordProperty("left", std::to_string(left));
-    // α = 0.2 leaves 0.8⁸ = 0.17; a history of 30 frames alone would leave 0.76. R11G11B10F: 1 %.
+    // α = 0.2 leaves 0.8⁸ = 0.17; a history of 30 frames alone would leave 0.76. The precision of R11G11B10F is 1 %.
     EXPECT_GT(left, -0.02);
     EXPECT_LT(left, 0.2);
 }
@@ -154,7 +154,7 @@ scene::Scene turning_ball() {
 
 using MovingSurfacesTest = RenderTest;
 
-// What a turning ball mirrors stands still; only its surface moves. Error of its reflection after 16 frames.
+// A turning ball's reflection is static; only its surface moves. Measures the error of the reflection after 16 frames.
 TEST_F(MovingSurfacesTest, ReflectionsDoNotTurnWithThem) {
     scene::Scene scene = turning_ball();
     scene::GpuScene gpu_scene(device(), scene, traversal());

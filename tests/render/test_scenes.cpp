@@ -17,7 +17,7 @@ glm::vec3 sphere_point(std::uint32_t stack, std::uint32_t slice, std::uint32_t s
     return {std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi)};
 }
 
-/// Appends a triangle with vertices of its own, leaving out those without area (at the poles).
+/// Appends a triangle with its own vertices, but skips triangles without area (at the poles).
 void append_triangle(scene::Mesh& mesh, const std::array<glm::vec3, 3>& p, const std::array<glm::vec3, 3>& n) {
     if (glm::length(glm::cross(p[1] - p[0], p[2] - p[0])) < 1e-9F) {
         return;
@@ -208,7 +208,7 @@ scene::Scene cornell_box() {
 }
 
 Camera cornell_camera(std::uint32_t size_px) {
-    // Off the axis of symmetry: no edge of the room may run through pixel centres.
+    // The camera is off the axis of symmetry, because no edge of the room may run through pixel centres.
     return look_at({0.06F, 0.03F, 3.9F}, {0.02F, 0.01F, 0}, glm::radians(39.3F), size_px, size_px);
 }
 

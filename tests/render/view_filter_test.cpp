@@ -32,7 +32,7 @@ protected:
         return header;
     }
 
-    /// A 3×3 grid without guard band, so that there are holes at the border and behind edges.
+    /// A 3×3 grid. Without guard band, holes appear at the border, too.
     static ViewRequest grid_of(const FrameHeader& header) { return grid_request(header.source, 3, 3, kGeometry); }
 
     static Views render(Stage& s, const FrameHeader& header) {
@@ -77,7 +77,7 @@ TEST_F(ViewFilterTest, ViewsAverageTheirLightUntilTheSceneIsCut) {
     Stage converged = stage(area_lit_room());
     render(converged, header_of(0, 128));
     FrameHeader header = header_of(0);
-    header.settings.accumulate_views = true; // the source itself averages nothing
+    header.settings.accumulate_views = true; // the source itself does not average
     double first = 0.0;
     for (std::uint32_t frame = 0; frame < 12; ++frame) {
         header.cut = frame == 0;
@@ -85,8 +85,8 @@ TEST_F(ViewFilterTest, ViewsAverageTheirLightUntilTheSceneIsCut) {
         render(s, header);
         first = frame == 0 ? error_of(s.grid, converged.grid) : first;
     }
-    // Weights of α = 0.2 leave √(α / (2 − α)) = 1/3 of the noise; after twelve frames 0.35, and the
-    // reference's own 1/11.
+    // α = 0.2 leaves √(α / (2 − α)) = 1/3 of the noise in the limit and 0.35 after twelve frames. The reference adds
+    // its own 1/11.
     EXPECT_LT(error_of(s.grid, converged.grid), 0.45 * first);
     header.cut = true;
     render(s, header);
@@ -111,7 +111,8 @@ TEST_F(ViewFilterTest, AveragesFollowAMovingCamera) {
         }
         first = frame == 0 ? error_of(s.grid, converged.grid) : first;
     }
-    // 0.36 at rest; pixels that come into view have no history, and taps between pixels smear the light's falloff.
+    // 0.36 without motion. Pixels that come into view have no history, and taps between pixels blur the light's
+    // falloff.
     EXPECT_LT(error_of(s.grid, converged.grid), 0.6 * first);
 }
 
@@ -129,13 +130,13 @@ TEST_F(ViewFilterTest, NoiselessLightIsNotChangedByAverages) {
         header.settings.max_bounces = 1;
         render(red, header);
     }
-    // Half floats, of radiance and of a hole's light: 2^-11 each.
+    // Radiance and a hole's light are half floats, 2^-11 each.
     EXPECT_LT(error_of(averaged.grid, plain.grid), 1e-3);
     EXPECT_LT(error_of(red.grid, plain.grid), 1e-3);
 }
 
 TEST_F(ViewFilterTest, FlatLightIsTheSameByBothRoutes) {
-    // Convex shapes in a constant sky: every sample of every visible point is 1.
+    // For convex shapes in a constant sky, every sample of every visible point is 1.
     SceneBuilder builder;
     builder.environment().constant = glm::vec3(1.0F);
     builder.add(box({-0.5F, 0, 0}, glm::vec3(0.3F)), builder.add_material(diffuse({0.8F, 0.2F, 0.1F})));
@@ -148,7 +149,7 @@ TEST_F(ViewFilterTest, FlatLightIsTheSameByBothRoutes) {
         header.settings.denoised_images = DenoisedImages::kSource;
         render(green, header);
     }
-    EXPECT_LT(error_of(red.grid, green.grid), 0.01); // R11G11B10F of light that is not quite 1: 2^-7
+    EXPECT_LT(error_of(red.grid, green.grid), 0.01); // precision of R11G11B10F for light of almost 1: 2^-7
 }
 
 TEST_F(ViewFilterTest, RedRouteHasTheGreensMeanAndLessNoiseInHoles) {
@@ -169,8 +170,8 @@ TEST_F(ViewFilterTest, RedRouteHasTheGreensMeanAndLessNoiseInHoles) {
         }
         EXPECT_LT(error_of(red.grid, converged.grid), 0.5 * error_of(noisy.grid, converged.grid));
         const double in_holes = error_of(red.grid, converged.grid, Pixels::kHoles);
-        EXPECT_LT(in_holes, 0.7 * error_of(green.grid, converged.grid, Pixels::kHoles)); // which are one sample each
-        // Five frames of 3072 independent pixels, each with a standard deviation of about three times the mean: 2.4 %.
+        EXPECT_LT(in_holes, 0.7 * error_of(green.grid, converged.grid, Pixels::kHoles)); // holes have one sample each
+        // Five frames of 3072 independent pixels with a standard deviation of about three times the mean give 2.4 %.
         EXPECT_LT(std::abs(mean_of(red.grid) - mean_of(green.grid)), 0.05 * expected);
         EXPECT_LT(std::abs(mean_of(red.grid) - expected), 0.05 * expected);
         RecordProperty("red", std::to_string(error_of(red.grid, converged.grid)));
@@ -204,7 +205,7 @@ TEST_F(ViewFilterTest, AnotherSetOfViewsStartsAnew) {
             EXPECT_EQ(views.views[i].image, expected.views[i].image) << i;
         }
     }
-    FrameHeader header = red_header(frame, Denoiser::kSvgf); // the same set: its history counts
+    FrameHeader header = red_header(frame, Denoiser::kSvgf); // the same set of views, whose history is used
     s.gpu_scene.pose(0, false);
     const SourcePlanes& planes = s.source.render(header);
     const Views views = s.grid.render(planes, request);
@@ -222,7 +223,7 @@ TEST_F(ViewFilterTest, AveragesOfStillFramesAreTheSameByBothRoutes) {
         header.settings.denoised_images = DenoisedImages::kSource;
         const Views by_green = render(green, header);
         const bool is_same = by_red.views[3].image == by_green.views[3].image;
-        EXPECT_EQ(is_same, frame > 0) << frame; // the first does not know that nothing moves
+        EXPECT_EQ(is_same, frame > 0) << frame; // the first frame is not known to be still
     }
 }
 
@@ -277,7 +278,7 @@ TEST_F(ViewFilterTest, MoreViewsThanTheDeviceHasRoomForAreRefused) {
     Stage s = stage(point_lit_room());
     const FrameHeader header = red_header(0, Denoiser::kSvgf);
     ViewRequest request = grid_request(header.source, 8, 9, kGeometry);
-    request.width_px = request.height_px = 8192; // never allocated
+    request.width_px = request.height_px = 8192; // must be refused before allocation
     const SourcePlanes& planes = s.source.render(header);
     try {
         s.grid.render(planes, request);
@@ -288,7 +289,7 @@ TEST_F(ViewFilterTest, MoreViewsThanTheDeviceHasRoomForAreRefused) {
     const std::uint64_t most = ViewFilter::max_pixels(device(), header.settings);
     EXPECT_GT(most, 36U * 320 * 180);
     const std::uint64_t most_fitted = ViewFilter::max_pixels(device(), red_header(0, Denoiser::kBmfr).settings);
-    EXPECT_LE(most_fitted, most); // BMFR keeps more
+    EXPECT_LE(most_fitted, most); // BMFR needs more memory per pixel
     EXPECT_GT(most_fitted, most / 2);
 }
 

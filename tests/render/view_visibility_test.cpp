@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What views see is the same whether rays find it or a rasteriser.
+// Visibility of views must be the same from rays and from a rasteriser.
 #include "core/render/camera_record.h"
 #include "core/render/view_request.h"
 #include "core/render/views/drawn_visibility.h"
+#include "core/render/views/view_visibility.h"
 #include "shaders/shared/scene.h"
 #include "tests/render/render_test.h"
 
@@ -18,7 +19,7 @@ constexpr std::uint32_t kNothing = shared::kNoInstance;
 
 using ViewVisibilityTest = RenderTest;
 
-/// What the pixels of views see, one view after the other.
+/// Visibility of the pixels of all views, one view after the other.
 struct Seen {
     std::vector<glm::uvec2> solid; ///< (instance, primitive)
     std::vector<std::array<glm::uvec2, 2>> layers;
@@ -31,7 +32,7 @@ Seen look(const gpu::Device& device, const scene::GpuScene& scene, ViewVisibilit
     const auto records = gpu::make_buffer<shared::CameraRecord>(device, make_camera_records(cameras));
     const gpu::Buffer visibility(device, padded * cameras.size() * 8);
     const gpu::Buffer layers(device, padded * cameras.size() * 16);
-    gpu::Recorder recorder(device);
+    gpu::CommandRecorder recorder(device);
     views.record(recorder, {cameras, records.address(), &visibility, &layers});
     recorder.submit();
     Seen seen;
@@ -51,7 +52,7 @@ Seen look(const gpu::Device& device, const scene::GpuScene& scene, std::span<con
     return look(device, scene, views, cameras);
 }
 
-/// Black and white squares, every other one cut out.
+/// A material of squares, every other one cut out.
 scene::Material cut_out(SceneBuilder& builder) {
     scene::Material material = diffuse(glm::vec3(1.0F));
     material.alpha_mode = scene::AlphaMode::kMask;
@@ -66,8 +67,8 @@ scene::Material veil() {
     return material;
 }
 
-/// A room that goes on behind the camera, with a finely divided sphere, a smaller mirror image of it, a lattice that is
-/// cut out of a rectangle, and two veils that hang in front of each other, one of them swinging.
+/// A room that extends behind the camera. It has a finely divided sphere, a smaller mirror image of it, a lattice cut
+/// out of a rectangle, and two veils in front of each other, one of which swings.
 scene::Scene furnished_room() {
     SceneBuilder builder;
     const std::uint32_t wall = builder.add_material(diffuse(glm::vec3(0.5F)));
@@ -83,7 +84,7 @@ scene::Scene furnished_room() {
     return builder.scene();
 }
 
-/// Ten views, so that they are drawn in two batches, with off-axis frustums.
+/// Ten views with off-axis frustums, which need two batches.
 std::vector<Camera> ten_views() {
     const Camera middle = look_at({0, 0.1F, 0.5F}, {0, 0, -1}, 0.9F, kWidth, kHeight);
     std::vector<Camera> cameras;
@@ -94,7 +95,7 @@ std::vector<Camera> ten_views() {
     return cameras;
 }
 
-/// How many of the elements differ.
+/// Share of the elements that differ.
 template <class T> double share_of_differences(const std::vector<T>& a, const std::vector<T>& b) {
     EXPECT_EQ(a.size(), b.size());
     std::size_t differing = 0;
@@ -104,11 +105,11 @@ template <class T> double share_of_differences(const std::vector<T>& a, const st
     return static_cast<double>(differing) / static_cast<double>(a.size());
 }
 
-// A rasteriser moves vertices by up to half of 1/256 pixel, so that a pixel may see the other side of an edge if its
-// centre is that near. The edges of the sphere's 2200 visible triangles of 3 pixels, the only many, are 10 000 pixels
-// long in a picture of 22 713: 10 000 / 256 / 22 713 = 0.17 %.
+// A rasteriser moves vertices by up to half of 1/256 pixel. A pixel may then show the other side of an edge if its
+// centre is that close. Most edges belong to the sphere's 2200 visible triangles of 3 pixels: they are 10 000 pixels
+// long in an image of 22 713, which gives 10 000 / 256 / 22 713 = 0.17 %.
 constexpr double kEdgeShare = 0.002;
-// Of a picture of 40x90 a third shows the sphere: 2800 pixels of edges in 3600, 2800 / 256 / 3600 = 0.3 %.
+// In an image of 40x90, a third shows the sphere. 2800 pixels of edges in 3600 give 2800 / 256 / 3600 = 0.3 %.
 constexpr double kNarrowEdgeShare = 0.0035;
 
 TEST_F(ViewVisibilityTest, DrawnViewsSeeWhatRaysMeet) {
@@ -125,7 +126,7 @@ TEST_F(ViewVisibilityTest, DrawnViewsSeeWhatRaysMeet) {
         const Seen by_raster = look(device(), drawn, cameras);
         EXPECT_LT(share_of_differences(by_rays.solid, by_raster.solid), kEdgeShare);
         EXPECT_LT(share_of_differences(by_rays.layers, by_raster.layers), kEdgeShare);
-        for (std::uint32_t instance = 0; instance < 4; ++instance) { // everything solid is in the picture
+        for (std::uint32_t instance = 0; instance < 4; ++instance) { // every solid instance must be in the image
             EXPECT_TRUE(std::ranges::any_of(by_raster.solid, [&](glm::uvec2 s) { return s.x == instance; }))
                 << instance;
         }
@@ -134,7 +135,7 @@ TEST_F(ViewVisibilityTest, DrawnViewsSeeWhatRaysMeet) {
         }
         seen.push_back(by_raster);
     }
-    EXPECT_GT(share_of_differences(seen[0].layers, seen[1].layers), 0.1); // one of the veils has moved
+    EXPECT_GT(share_of_differences(seen[0].layers, seen[1].layers), 0.1); // one of the veils must have moved
 }
 
 TEST_F(ViewVisibilityTest, PixelsThatSeeNothingSayso) {
@@ -172,7 +173,7 @@ TEST_F(ViewVisibilityTest, SmallPicturesOfManyTrianglesAreTraced) {
     };
     EXPECT_FALSE(is_fast(64, 36, {0, 0, -1})); // 2304 pixels for 40 000 triangles
     EXPECT_TRUE(is_fast(640, 360, {0, 0, -1}));
-    EXPECT_TRUE(is_fast(64, 36, {0, 0, 1})); // looks the other way
+    EXPECT_TRUE(is_fast(64, 36, {0, 0, 1})); // the camera looks away from the triangles
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views made from colour and depth, against the same views of a scene that is known exactly: a floor, a wall, and a
-// card in front of it.
+// Compares views made from colour and depth with exact views of an analytic scene: a floor, a wall, and a card in front
+// of it.
 #include "core/render/warp/residual_tiles.h"
 #include "core/render/warp/warp_planes.h"
 #include "core/render/warp/warp_renderer.h"
@@ -29,7 +29,7 @@ struct Seen {
     glm::vec3 colour{0.0F}; // 0 … 255
 };
 
-/// Waves on every surface, at least 15 pixels long: bilinear interpolation misses their crests by at most
+/// Colour waves on every surface, at least 15 pixels long. Bilinear interpolation errs at their crests by at most
 /// 100 · (2π / 15)² / 8 = 2.2.
 glm::vec3 wave(const glm::vec2& at, float length_m) {
     const float phase = 2.0F * std::numbers::pi_v<float> / length_m;
@@ -38,7 +38,7 @@ glm::vec3 wave(const glm::vec2& at, float length_m) {
 
 Seen look(const Camera& camera, const glm::vec2& pixel) {
     const glm::vec3 origin(camera.world_from_camera[3]);
-    const glm::vec3 ray = unproject(camera, pixel, 1.0F) - origin; // one metre of view depth
+    const glm::vec3 ray = unproject(camera, pixel, 1.0F) - origin; // scaled to one metre of view depth
     const glm::vec3 at_card = origin + kCard_m * ray;
     if (std::abs(at_card.x) < 0.35F && std::abs(at_card.y - 0.1F) < 0.3F) {
         return {kCard, kCard_m, wave(glm::vec2(at_card), 0.5F) * glm::vec3(1.0F, 0.3F, 0.3F)};
@@ -55,7 +55,7 @@ Seen look(const Camera& camera, std::uint32_t x, std::uint32_t y) {
     return look(camera, glm::vec2(x, y) + 0.5F);
 }
 
-/// What a camera sees, as planes.
+/// The planes of a camera's image.
 struct Image {
     Plane colour;
     std::vector<float> depth_m;
@@ -109,7 +109,7 @@ protected:
         return moved_camera(header().source, grid().geometry, position);
     }
 
-    /// Adds the tiles of one view in which a quarter of a tile is hidden in the source.
+    /// Adds the tiles of one view in which at least one pixel is hidden in the source.
     static void add_tiles(SourceFrame& frame, LatticePosition position, const std::vector<bool>& holes) {
         const Image image = photograph(camera_of(position), PlaneSemantic::kResidualColour);
         const std::vector<std::uint32_t> tiles = choose_tiles(holes, {kWidth, kHeight}, 1);
@@ -124,7 +124,7 @@ protected:
         frame.planes.push_back(depth.plane());
     }
 
-    /// Largest difference of a pixel's channels from the truth.
+    /// Largest error of a pixel's channels.
     static float error_at(const View& view, std::uint32_t x, std::uint32_t y) {
         const Seen truth = look(camera_of(view.position), x, y);
         float error = 0.0F;
@@ -136,7 +136,7 @@ protected:
         return error;
     }
 
-    /// Whether a pixel and all within a pixel of it see one surface.
+    /// Whether a pixel and its direct neighbours show one surface.
     static bool is_inner(const Camera& camera, std::uint32_t x, std::uint32_t y) {
         const Surface here = look(camera, x, y).surface;
         for (const glm::vec2 step : {glm::vec2(1, 0), glm::vec2(-1, 0), glm::vec2(0, 1), glm::vec2(0, -1)}) {
@@ -147,7 +147,8 @@ protected:
         return true;
     }
 
-    /// Whether the source, and all of it within two pixels, shows the surface that a view sees there.
+    /// Whether the source shows the surface of a view's pixel at its position and two pixels around it. True if it does
+    /// everywhere (`wanted`) or nowhere (not `wanted`).
     static bool is_shown(const Camera& camera, std::uint32_t x, std::uint32_t y, bool wanted) {
         const Camera source = widened_source(header(), 0);
         const Seen seen = look(camera, x, y);
@@ -179,12 +180,12 @@ TEST_F(WarpRendererTest, ShowsWhatTheSourceShowsExactly) {
             if (is_inner(camera, x, y) && is_shown(camera, x, y, true)) {
                 ++checked;
                 EXPECT_FALSE(holes[pixel]) << i << ": " << x << ", " << y;
-                // interpolation (above), rounding of both by half, a 1/64 pixel of depth (0.7)
+                // interpolation 2.2 (see wave()), rounding of both images 0.5 each, 1/64 pixel of depth 0.7
                 EXPECT_LE(error_at(views.views[i], x, y), 4.0F) << i << ": " << x << ", " << y;
             }
         }
     }
-    EXPECT_GT(checked, 36 * 1500); // of about 2200 looked at
+    EXPECT_GT(checked, 36 * 1500); // of about 2200 pixels sampled per view
 }
 
 TEST_F(WarpRendererTest, KnowsWhatTheSourceHides) {
@@ -236,7 +237,7 @@ TEST_F(WarpRendererTest, ExtendsWhatIsBehindAndNeverTheCard) {
             if (holes[pixel]) {
                 ++count;
                 EXPECT_GT(channel(0) + channel(1) + channel(2), 20) << "black at " << pixel; // surfaces are brighter
-                const bool is_red = channel(0) > 3 * channel(1) && channel(0) > 3 * channel(2); // as only the card
+                const bool is_red = channel(0) > 3 * channel(1) && channel(0) > 3 * channel(2); // only the card is red
                 reddish += is_red ? 1 : 0;
             }
         }
@@ -276,7 +277,7 @@ TEST_F(WarpRendererTest, ResidualLayerShowsInnerViewsWhatTheSourceHides) {
         }
     }
     ASSERT_GT(hidden_count, 50U);
-    EXPECT_LT(left, hidden_count / 5); // pixels at edges are left
+    EXPECT_LT(left, hidden_count / 5); // pixels at edges remain
     EXPECT_LT(error_with, error_without / 3.0);
 }
 

@@ -33,7 +33,7 @@ TEST(PoseScene, InterpolatesTranslations) {
     const std::vector<float> values{0, 0, 0, 1, 0, 0, 3, 0, 0};
     const Scene linear = animated("translation", times, values, "LINEAR").load();
     EXPECT_EQ(linear.duration_s, 4.0);
-    EXPECT_FLOAT_EQ(position_at(linear, 0.5).x, 0.0F); // held before the first key
+    EXPECT_FLOAT_EQ(position_at(linear, 0.5).x, 0.0F); // constant before the first key
     EXPECT_FLOAT_EQ(position_at(linear, 1.5).x, 0.5F);
     EXPECT_FLOAT_EQ(position_at(linear, 3.0).x, 2.0F);
     const Scene step = animated("translation", times, values, "STEP").load();
@@ -43,7 +43,7 @@ TEST(PoseScene, InterpolatesTranslations) {
 }
 
 TEST(PoseScene, InterpolatesCubicSplines) {
-    // From 0 to 1 within two seconds, leaving with speed 1 and arriving with speed 0:
+    // The curve goes from 0 to 1 in two seconds, with speed 1 at the start and 0 at the end:
     // p(t) = 0 + (t³ − 2t² + t) · 2 · 1 + (3t² − 2t³) · 1 with t = 0.5: 0.125 · 2 + 0.5.
     const Scene scene =
         animated("translation", {0, 2}, {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 9, 9, 9}, "CUBICSPLINE").load();
@@ -87,7 +87,7 @@ TEST(PoseScene, LoopsAndShowsTheLastKeyOfEachLoop) {
     EXPECT_EQ(loop_index(scene, kSecond_ns + 2000), 1);
     EXPECT_EQ(loop_index(scene, 3 * kSecond_ns), 2);
     EXPECT_EQ(loop_index(Scene{}, kSecond_ns), 0);
-    Scene short_lived; // the quotient would leave 64 bits
+    Scene short_lived; // the loop index would exceed 64 bits
     short_lived.duration_s = 1e-40;
     EXPECT_EQ(loop_index(short_lived, std::numeric_limits<std::int64_t>::max()), 0);
 }

@@ -28,7 +28,7 @@ class KnownSceneTest : public testing::TestWithParam<KnownScene> {};
 TEST_P(KnownSceneTest, LoadsWithTheKnownCounts) {
     const KnownScene& known = GetParam();
     if (!fs::exists(known.file)) {
-        ASSERT_TRUE(std::string(known.file).starts_with("../")) << known.file << " belongs to the project";
+        ASSERT_TRUE(std::string(known.file).starts_with("../")) << known.file << " must exist in the project";
         GTEST_SKIP() << known.file << " is not on this machine";
     }
     const Scene scene = load_scene(known.file);

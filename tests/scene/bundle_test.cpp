@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A scene with a buffer, an image and an environment in files, beside files that it does not use.
+/// A scene with a buffer, an image and an environment in files, next to files that it does not use.
 class BundleTest : public testing::Test {
 protected:
     BundleTest() : main_(write_scene(folder_)) {
@@ -66,7 +66,7 @@ TEST_F(BundleTest, RoundTripKeepsFilesOptionsAndHash) {
     EXPECT_EQ(make_bundle(unpacked->file, unpacked->options), bundle);
 }
 
-/// What is computed here is what a client decodes from the bundle, bit for bit.
+/// The client's studio, decoded from the bundle, equals the computed one bit for bit.
 TEST_F(BundleTest, TheStudioTravels) {
     const LoadOptions in_studio{.environment = {}, .surroundings = Surroundings::kStudio, .limits = {}};
     const Scene scene = load_scene(main_, in_studio);
@@ -100,7 +100,7 @@ TEST_F(BundleTest, HashDependsOnContentNotOnPlace) {
 TEST_F(BundleTest, HashIsStableOverReleases) {
     const TempFolder folder;
     const fs::path file = folder.write("tiny.gltf", R"({"asset":{"version":"2.0"}})");
-    // Written out by hand from the layout in bundle.cpp.
+    // Bytes written by hand according to the layout in bundle.cpp.
     std::string expected("FCBUNDLE\x01\0\0\0\0\0\0\x3F\x33\x33\x33\x3F\0\0\x80\x3F\x09\0tiny.gltf\0\0\x01\0\0\0", 41);
     expected += std::string("\x09\0tiny.gltf\x1B\0\0\0\0\0\0\0", 19) + R"({"asset":{"version":"2.0"}})";
     const auto bytes = std::as_bytes(std::span(expected));
@@ -145,7 +145,7 @@ TEST_F(BundleTest, SurvivesRandomChanges) {
     }
 }
 
-/// A bundle of files that may not exist.
+/// A bundle of made-up files.
 std::vector<std::byte> forged(const std::vector<std::string>& paths, const std::string& main,
                               const std::string& environment = {}) {
     std::string text("FCBUNDLE\x01\0\0\0", 12);
@@ -191,7 +191,7 @@ TEST(UnpackBundle, RefusesForgedPaths) {
     EXPECT_THAT(refused({"", "s.gltf"}), HasSubstr("not sorted or not unique"));
     EXPECT_THAT(refused({"s.gltf", "s.gltf"}), HasSubstr("not sorted or not unique"));
     EXPECT_THAT(refused({"s.gltf", "a"}), HasSubstr("not sorted or not unique"));
-    EXPECT_THAT(refused({"a", "a/b", "s.gltf"}), HasSubstr("a file is also a folder"));
+    EXPECT_THAT(refused({"a", "a/b", "s.gltf"}), HasSubstr("also that of a folder"));
     EXPECT_THAT(refused({"a"}), HasSubstr("glTF file is missing"));
     EXPECT_THAT(refused({"d/s.gltf"}, "d/s.gltf"), HasSubstr("topmost folder"));
     EXPECT_THAT(refused({"s.gltf"}, "s.gltf", "environment.fieldcast/sky.hdr"), HasSubstr("environment"));

@@ -25,8 +25,8 @@ TEST(Environment, IsTheStudioWhereNothingGivesLight) {
     EXPECT_TRUE(scene.has_studio);
     ASSERT_FALSE(scene.environment.pixels.empty());
     const auto [darkest, brightest] = std::ranges::minmax(scene.environment.pixels, {}, &glm::vec3::x);
-    EXPECT_GT(darkest.x, 0.0F) << "no black holes in mirrors";
-    EXPECT_GT(brightest.x, 20.0F * darkest.x) << "there are lights in it";
+    EXPECT_GT(darkest.x, 0.0F) << "mirrors must not show black";
+    EXPECT_GT(brightest.x, 20.0F * darkest.x) << "the studio must have lights";
     GltfBuilder glowing;
     glowing.add_triangle();
     glowing.json["materials"] = {{{"emissiveFactor", {1, 1, 1}}}};

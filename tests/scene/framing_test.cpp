@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kAspect = 16.0F / 9.0F;
 
-/// A box between two corners. Its front sides look outwards, or inwards.
+/// A box between two corners. Its front sides face outwards, or inwards if it is a room.
 Mesh box(const glm::vec3& low, const glm::vec3& high, bool is_room) {
     Mesh mesh;
     for (unsigned i = 0; i < 8; ++i) {
@@ -49,7 +49,7 @@ Framing framing_of(const Scene& scene, const FramingOptions& options = {}) {
     return find_framing(scene, RayProbe(scene, pose_scene(scene, 0)), options, kAspect);
 }
 
-/// Place in the image, -1 to 1 on each side; depth in z.
+/// Position of `point` in the image, −1 to 1 in x and y; z is the depth.
 glm::vec3 seen_at(const Framing& framing, Scene scene, const glm::vec3& point) {
     add_camera(scene, framing, std::nullopt);
     const glm::mat4 pose = camera_pose(pose_scene(scene, 0), scene.cameras.back());
@@ -63,7 +63,7 @@ TEST(Framing, ShowsAWholeObjectWhateverItsSize) {
         SCOPED_TRACE(size);
         const Scene scene = scene_of({box(glm::vec3(size, 0.0F, 0.0F), size * glm::vec3(3.0F, 4.0F, 1.0F), false)});
         const Framing framing = framing_of(scene);
-        EXPECT_FALSE(framing.is_inside) << "from within a solid object only backs are seen";
+        EXPECT_FALSE(framing.is_inside) << "inside a solid object all visible sides are back sides";
         float largest = 0.0F;
         for (const glm::vec3& corner : scene.meshes[0].positions) {
             const glm::vec3 at = seen_at(framing, scene, corner);
@@ -71,9 +71,9 @@ TEST(Framing, ShowsAWholeObjectWhateverItsSize) {
             largest = std::max({largest, std::abs(at.x), std::abs(at.y)});
         }
         EXPECT_LE(largest, 1.0F);
-        EXPECT_GT(largest, 0.85F) << "it fills the frame";
-        EXPECT_GT(framing.from.y, framing.at.y) << "from above";
-        EXPECT_GT(framing.from.z, framing.at.z) << "from the front";
+        EXPECT_GT(largest, 0.85F) << "the object must fill the frame";
+        EXPECT_GT(framing.from.y, framing.at.y) << "the camera must be above the subject";
+        EXPECT_GT(framing.from.z, framing.at.z) << "the camera must be in front of the subject";
     }
 }
 
@@ -81,11 +81,11 @@ TEST(Framing, StandsInsideARoomAndLooksAlongIt) {
     const Scene scene = room_of(box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true));
     const Framing framing = framing_of(scene);
     ASSERT_TRUE(framing.is_inside);
-    EXPECT_NEAR(framing.from.y, 1.6F, 0.01F) << "eye height";
+    EXPECT_NEAR(framing.from.y, 1.6F, 0.01F) << "the camera must be at eye height";
     EXPECT_GT(framing.from.x * (12.0F - framing.from.x), 0.0F);
     const glm::vec3 direction = glm::normalize(framing.at - framing.from);
-    EXPECT_GT(std::abs(direction.x), 0.9F) << "the room is long in x";
-    EXPECT_GT(glm::distance(framing.from, framing.at), 6.0F) << "from one end, not from the middle";
+    EXPECT_GT(std::abs(direction.x), 0.9F) << "the camera must look along x, where the room is longest";
+    EXPECT_GT(glm::distance(framing.from, framing.at), 6.0F) << "the camera must stand at one end, not in the middle";
 }
 
 TEST(Framing, ARoomThatIsNotInMetresHasEyesInItsMiddle) {
@@ -97,7 +97,7 @@ TEST(Framing, ARoomThatIsNotInMetresHasEyesInItsMiddle) {
 
 TEST(Framing, NobodyStandsInADarkBox) {
     const Scene scene = scene_of({box({0.0F, 0.0F, 0.0F}, {12.0F, 3.0F, 4.0F}, true)});
-    EXPECT_FALSE(framing_of(scene).is_inside) << "no light gets in, and none is there";
+    EXPECT_FALSE(framing_of(scene).is_inside) << "a closed room without light must be seen from outside";
 }
 
 TEST(Framing, WhatIsSaidCounts) {
@@ -108,7 +108,7 @@ TEST(Framing, WhatIsSaidCounts) {
     EXPECT_EQ(framing.at, glm::vec3(2.0F));
     EXPECT_EQ(framing.fovy_rad, 0.5F);
     const Framing same = framing_of(scene, {.look_from = glm::vec3(2.0F), .look_at = glm::vec3(2.0F)});
-    EXPECT_NE(same.from, same.at) << "there is a direction all the same";
+    EXPECT_NE(same.from, same.at) << "equal points must still give a direction";
 }
 
 TEST(Framing, AnOrbitTurnsRoundTheSubjectAndComesBack) {
@@ -140,7 +140,7 @@ TEST(Framing, AVerticalLookHasAnImage) {
     EXPECT_NEAR(at.z, 8.0F, 1e-3F);
 }
 
-/// Disparity between outermost views, as a share of the width, of a point at that depth.
+/// Disparity of a point at `depth_m` between the outermost views, as a share of the width.
 float disparity(float depth_m, float spacing_m, float convergence_m, std::uint32_t count, float fovy_rad) {
     const float width_over_focal = 2.0F * std::tan(0.5F * fovy_rad) * kAspect;
     return static_cast<float>(count - 1) * spacing_m / width_over_focal * std::abs(1.0F / depth_m - 1.0F / convergence_m);
@@ -177,7 +177,7 @@ TEST(Framing, ProbesSeeInstancesWhereTheyAre) {
     const auto hit = probe.trace(glm::vec3(0.0F), {0.0F, 0.0F, -1.0F});
     ASSERT_TRUE(hit.has_value());
     EXPECT_NEAR(hit->distance_m, 8.0F, 1e-4F);
-    EXPECT_TRUE(hit->is_front) << "glTF: the front of a mirrored triangle is the other side";
+    EXPECT_TRUE(hit->is_front) << "in glTF the front of a mirrored triangle is the other side";
     EXPECT_FALSE(probe.trace(glm::vec3(0.0F), {0.0F, 0.0F, 1.0F}).has_value());
     EXPECT_FALSE(probe.trace({0.0F, 0.0F, -10.0F}, {0.0F, 0.0F, -1.0F})->is_front);
 }

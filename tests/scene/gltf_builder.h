@@ -28,11 +28,11 @@ private:
     std::filesystem::path path_;
 };
 
-/// Component types and modes of glTF.
+/// Component types of glTF accessors.
 enum : int { kI8 = 5120, kU8 = 5121, kI16 = 5122, kU16 = 5123, kU32 = 5125, kF32 = 5126 };
 enum : int { kPoints = 0, kTriangles = 4, kStrip = 5, kFan = 6 };
 
-/// Makes small glTF files. `json` is the document and may be changed freely before writing.
+/// Makes small glTF files. `json` is the document, which tests may change before it is written.
 class GltfBuilder {
 public:
     GltfBuilder();
@@ -43,7 +43,7 @@ public:
     /// Appends to a top-level list and returns the index.
     int add(const char* list, nlohmann::json entry);
     int add_view(std::span<const std::byte> bytes, int stride = 0);
-    /// An accessor over a view of its own.
+    /// Adds an accessor with its own view.
     template <class T>
     int add_accessor(const std::vector<T>& values, const char* type, int component_type, bool is_normalised = false) {
         return add_accessor(std::as_bytes(std::span(values)), values.size(), type, component_type, is_normalised);
@@ -51,23 +51,23 @@ public:
     int add_floats(const std::vector<float>& values, const char* type) { return add_accessor(values, type, kF32); }
     int add_accessor(std::span<const std::byte> bytes, std::size_t value_count, const char* type, int component_type,
                      bool is_normalised);
-    /// A 2 × 1 PNG in a buffer view and a texture of it; returns the texture.
+    /// Adds a 2 × 1 PNG in a buffer view and a texture of it; returns the texture.
     int add_texture();
-    /// A node of the scene.
+    /// Adds a node to the scene; returns the node.
     int add_node(nlohmann::json node);
-    /// Mesh with one primitive; returns the mesh.
+    /// Adds a mesh with one primitive; returns the mesh.
     int add_mesh(nlohmann::json primitive);
-    /// A mesh of one triangle in the plane z = 0 with normals +Z, shown by a node; returns the mesh.
+    /// Adds a mesh of one triangle in the plane z = 0 with normals +Z, and a node that shows it; returns the mesh.
     int add_triangle();
 
-    /// JSON with the buffer as data URI.
+    /// The document as text, with the buffer as data URI.
     std::string gltf() const;
     std::vector<std::byte> glb() const;
-    /// Writes and loads it as .gltf.
+    /// Writes the document as .gltf and loads it.
     Scene load(const LoadOptions& options = {}) const;
 };
 
-/// What load_scene says about a file it must refuse; a message of its own if it does not.
+/// The message with which load_scene refuses a file; "(the file was accepted)" if it does not.
 std::string refusal(const std::filesystem::path& file, const LoadOptions& options = {});
 std::string refusal(const GltfBuilder& builder, const LoadOptions& options = {});
 

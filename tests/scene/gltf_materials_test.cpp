@@ -91,7 +91,7 @@ TEST(GltfMaterials, AppliesTextureTransforms) {
     const TextureUse use = builder.load().materials.at(0).base_colour;
     EXPECT_EQ(use.uv_set, 1U);
     const glm::vec3 corner(1, 0, 1);
-    // (1, 0) · scale = (2, 0); a quarter turn counter-clockwise, seen with v down, makes it (0, −2).
+    // (1, 0) · scale = (2, 0). A quarter turn counter-clockwise, seen with v downwards, maps it to (0, −2).
     EXPECT_NEAR(glm::dot(use.uv_matrix[0], corner), 0.25F, 1e-6F);
     EXPECT_NEAR(glm::dot(use.uv_matrix[1], corner), 0.5F - 2.0F, 1e-6F);
 }

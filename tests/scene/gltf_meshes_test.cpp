@@ -36,7 +36,7 @@ TEST(GltfMeshes, TurnsStripsIntoTrianglesOfEqualOrientation) {
     const Mesh mesh = load_quad(kStrip, {0, 1, 3, 2});
     ASSERT_EQ(mesh.triangles.size(), 2U);
     EXPECT_EQ(mesh.triangles[0], glm::uvec3(0, 1, 3));
-    EXPECT_EQ(mesh.triangles[1], glm::uvec3(1, 2, 3)); // still counter-clockwise
+    EXPECT_EQ(mesh.triangles[1], glm::uvec3(1, 2, 3)); // the winding is still counter-clockwise
 }
 
 TEST(GltfMeshes, TurnsFansIntoTriangles) {
@@ -81,7 +81,7 @@ TEST(GltfMeshes, RepairsNormalsAndTangentsWithoutDirection) {
     builder.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normal;
     builder.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = tangent;
     const Mesh mesh = builder.load().meshes.at(0);
-    EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1)); // of the triangle
+    EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1)); // normal of the triangle
     EXPECT_EQ(mesh.normals[1], glm::vec3(0, 0, 1));
     EXPECT_FLOAT_EQ(glm::length(glm::vec3(mesh.tangents[0])), 1.0F);
     EXPECT_EQ(mesh.tangents[1], glm::vec4(1, 0, 0, -1));
@@ -94,13 +94,13 @@ TEST(GltfMeshes, ReadsColoursOfThreeAndFourComponents) {
     auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["COLOR_0"] =
         builder.add_accessor(std::vector<std::uint16_t>{65535, 0, 0, 0, 0, 65535, 0, 0, 0}, "VEC3", kU16, true);
-    // Rows of three 16-bit values are padded in practice; here they are packed.
+    // Exporters pad rows of three 16-bit values; here they are packed.
     const Mesh rgb = builder.load().meshes.at(0);
     EXPECT_EQ(rgb.colours.at(0), glm::vec4(1, 0, 0, 1));
     attributes["COLOR_0"] = builder.add_floats({1, 0, 0, 0.5F, 2, 0, 0, 1, 0, 0, 0, 0}, "VEC4");
     const Mesh rgba = builder.load().meshes.at(0);
     EXPECT_EQ(rgba.colours.at(0), glm::vec4(1, 0, 0, 0.5F));
-    EXPECT_EQ(rgba.colours.at(1), glm::vec4(1, 0, 0, 1)); // clamped
+    EXPECT_EQ(rgba.colours.at(1), glm::vec4(1, 0, 0, 1)); // clamped to 0 … 1
 }
 
 TEST(GltfMeshes, ReadsQuantisedAttributes) {
@@ -149,7 +149,7 @@ TEST(GltfMeshes, AppliesSparseAccessors) {
     EXPECT_EQ(mesh.positions[0], glm::vec3(0, 0, 0));
     EXPECT_EQ(mesh.positions[1], glm::vec3(5, 6, 7));
     EXPECT_EQ(mesh.positions[2], glm::vec3(8, 9, 10));
-    builder.json["accessors"][0].erase("bufferView"); // zeros, then the sparse values
+    builder.json["accessors"][0].erase("bufferView"); // without a view: zeros, replaced by the sparse values
     EXPECT_EQ(builder.load().meshes.at(0).positions[1], glm::vec3(5, 6, 7));
 }
 
@@ -157,7 +157,7 @@ TEST(GltfMeshes, SharesMeshesBetweenNodes) {
     GltfBuilder builder;
     const int mesh = builder.add_triangle();
     builder.json["meshes"][0]["primitives"].push_back(builder.json["meshes"][0]["primitives"][0]);
-    builder.add_node({{"mesh", mesh}, {"scale", {-1, 2, 3}}}); // mirrored, not uniform: legal
+    builder.add_node({{"mesh", mesh}, {"scale", {-1, 2, 3}}}); // mirrored and not uniform, which glTF allows
     const Scene scene = builder.load();
     EXPECT_EQ(scene.meshes.size(), 2U);
     ASSERT_EQ(scene.instances.size(), 4U);
@@ -184,7 +184,7 @@ TEST(GltfMeshes, WarnsOncePerKindOfWhatItIgnores) {
                                      "points and lines are ignored (1 primitive)", "skins are ignored (3 nodes)"));
 }
 
-/// Replaces the data of view 0 … by compressed views; the uncompressed bytes lie in a fallback buffer without data.
+/// Compresses buffer views with EXT_meshopt_compression. The views refer to a fallback buffer without data.
 struct CompressedBuilder : GltfBuilder {
     CompressedBuilder() {
         json["extensionsUsed"] = json["extensionsRequired"] = {"EXT_meshopt_compression"};
@@ -247,12 +247,12 @@ TEST(GltfMeshes, DecodesMeshoptVerticesTrianglesAndSequences) {
 TEST(GltfMeshes, DecodesMeshoptFilters) {
     CompressedBuilder builder;
     const int position = builder.add_view_accessor(builder.add_vertices(kQuad, 12), 4, "VEC3", kF32);
-    // One octahedral normal per vertex, 8 bits: x, y, one, w. (127, 0) is +X.
+    // One octahedral normal per vertex, with 8 bits each for x, y, one, w. (127, 0) is +X.
     const std::vector<std::int8_t> octahedral{127, 0, 127, 0, 127, 0, 127, 0, 0, 127, 127, 0, 0, 0, 127, 0};
     const int normal_view = builder.add_vertices(octahedral, 4, "OCTAHEDRAL");
     const int normal = builder.add_view_accessor(normal_view, 4, "VEC3", kI8);
     builder.json["accessors"][static_cast<std::size_t>(normal)]["normalized"] = true;
-    // Exponent in the top 8 bits, mantissa below: 2^-1 · 3 = 1.5.
+    // The exponent is in the top 8 bits, the mantissa below: 2^-1 · 3 = 1.5.
     const std::vector<std::uint32_t> exponential(8, 0xFF000003U);
     const int uv = builder.add_view_accessor(builder.add_vertices(exponential, 8, "EXPONENTIAL"), 4, "VEC2", kF32);
     const int indices = builder.add_accessor(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3}, "SCALAR", kU8);
@@ -281,14 +281,14 @@ TEST(GltfMeshes, RefusesBrokenMeshoptData) {
     };
     EXPECT_THAT(refused_with("mode", "ZIP"), HasSubstr("bufferView 0: unknown compression mode"));
     EXPECT_THAT(refused_with("filter", "OCTAHEDRAL"), HasSubstr("does not fit"));
-    EXPECT_THAT(refused_with("count", 1000000000), HasSubstr("do not give its byteLength"));
+    EXPECT_THAT(refused_with("count", 1000000000), HasSubstr("is not its byteLength"));
     EXPECT_THAT(refused_with("byteLength", 1 << 30), HasSubstr("outside its buffer"));
     EXPECT_THAT(refused_with("byteOffset", 8), HasSubstr("outside its buffer"));
     EXPECT_THAT(refused_with("buffer", 1), HasSubstr("outside its buffer"));
     EXPECT_THAT(refused_with("buffer", 9), HasSubstr("has no buffer"));
     EXPECT_THAT(refused_with("byteOffset", 1LL << 40), HasSubstr("is not an integer"));
     EXPECT_THAT(refused_with("byteLength", 9), HasSubstr("compressed data is broken"));
-    CompressedBuilder huge = builder; // 10⁹ bytes from a hundred
+    CompressedBuilder huge = builder; // claims 10⁹ bytes from about a hundred
     huge.json["buffers"][1]["byteLength"] = 1LL << 40;
     huge.json["bufferViews"][0]["byteLength"] = 1200000000;
     huge.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = 100000000;
@@ -305,10 +305,10 @@ TEST(GltfMeshes, CountsTrianglesBeforeItAllocates) {
     LoadOptions options;
     options.limits.max_triangles = 10;
     EXPECT_EQ(builder.load(options).instances.size(), 10U);
-    builder.add_node({{"mesh", mesh}}); // instances cost nothing
+    builder.add_node({{"mesh", mesh}}); // instances do not count
     EXPECT_EQ(builder.load(options).instances.size(), 20U);
     options.limits.max_triangles = 9;
-    EXPECT_THAT(refusal(builder, options), HasSubstr("primitive 9: more than 9 triangles"));
+    EXPECT_THAT(refusal(builder, options), HasSubstr("primitive 9: brings the scene to more than 9 triangles"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truncated and damaged files: refused with UserError or loaded, never a crash. The sanitizer builds run this too.
+// Truncated and damaged files must be refused with UserError or load. The sanitizer builds run these tests, too.
 #include "core/base/error.h"
 #include "tests/scene/gltf_builder.h"
 
@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kSeed = 20240611;
 constexpr int kRounds = 1500;
 
-/// A file that takes most paths of the loader.
+/// A file that exercises most of the loader.
 GltfBuilder rich_scene() {
     GltfBuilder builder;
     builder.add_triangle();
@@ -56,7 +56,7 @@ protected:
         options_.limits = {1 << 16, 1 << 16, 1 << 18, 1 << 24};
     }
 
-    /// Whether the bytes load; anything but UserError escapes and fails the test.
+    /// Whether the bytes load. Any exception but UserError propagates and fails the test.
     bool loads(std::span<const std::byte> bytes) {
         try {
             const Scene scene = load_scene(folder_.write("mutant", bytes), options_);
@@ -94,7 +94,7 @@ TEST_P(MutationTest, SurvivesChangedBytes) {
     }
 }
 
-/// Digits stay digits: the JSON remains valid and its numbers become wrong.
+/// Replaces digits by digits, so that the JSON remains valid with wrong numbers.
 TEST_P(MutationTest, SurvivesChangedNumbers) {
     std::mt19937 random(kSeed);
     std::vector<std::size_t> digits;
@@ -112,10 +112,10 @@ TEST_P(MutationTest, SurvivesChangedNumbers) {
         }
         loaded += loads(mutant) ? 1 : 0;
     }
-    EXPECT_GT(loaded, 0); // else the mutants would be refused too early to test anything
+    EXPECT_GT(loaded, 0); // otherwise all mutants are refused too early to test the loader
 }
 
-/// One JSON value replaced by another of the kinds that hostile files use.
+/// Replaces one JSON value by a typical value of hostile files.
 TEST_P(MutationTest, SurvivesReplacedValues) {
     const std::vector<nlohmann::json> hostile{-1,
                                               0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How load_scene refuses the files in tests/data/malformed_gltf (written by generate.py there).
+// Messages with which load_scene refuses the files in tests/data/malformed_gltf (written by generate.py there).
 #include "tests/scene/gltf_builder.h"
 
 #include <fstream>
@@ -15,24 +15,24 @@ using testing::StartsWith;
 
 const fs::path kFolder = "tests/data/malformed_gltf";
 
-/// File and what follows its name in the message.
+/// File, and the text after its name at the beginning of the message.
 const std::map<std::string, std::string> kExpected{
-    {"accessor_beyond_view.gltf", "accessor 0: 12 bytes beyond bufferView 0"},
+    {"accessor_beyond_view.gltf", "accessor 0: ends 12 bytes beyond bufferView 0"},
     {"accessor_count_fraction.gltf", "accessors/0/count: is not an integer"},
     {"accessor_count_negative.gltf", "accessors/0/count: is not an integer"},
     {"accessor_count_overflow.gltf", "accessors/0/count: is not an integer"},
     {"accessor_count_zero.gltf", "accessor 0: has no elements"},
     {"accessor_double.gltf", "accessor 0: unknown componentType 5130"},
-    {"accessor_huge_count.gltf", "accessor 0: 11999999964 bytes beyond bufferView 0"},
-    {"accessor_huge_without_view.gltf", "mesh 0: primitive 0: more than 67108864 triangles"},
-    {"accessor_offset_beyond_view.gltf", "accessor 0: 1000 bytes beyond bufferView 0"},
+    {"accessor_huge_count.gltf", "accessor 0: ends 11999999964 bytes beyond bufferView 0"},
+    {"accessor_huge_without_view.gltf", "mesh 0: primitive 0: brings the scene to more than 67108864 triangles"},
+    {"accessor_offset_beyond_view.gltf", "accessor 0: ends 1000 bytes beyond bufferView 0"},
     {"accessor_type.gltf", "json: "},
     {"accessor_wrong_shape.gltf", "mesh 0: primitive 0: POSITION: accessor 0: has the wrong type"},
     {"buffer_missing.gltf", "bufferView 0: buffer 1 does not exist"},
     {"buffer_too_short.gltf", "buffer 0: claims 81 bytes but has 80"},
     {"cycle_of_one.gltf", "node 0 'triangle': is its own ancestor"},
     {"cycle_of_two.gltf", "node 1: is its own ancestor"},
-    {"depth_bomb.gltf", "json: nested deeper"},
+    {"depth_bomb.gltf", "json: is nested deeper"},
     {"empty.gltf", "json: "},
     {"empty_scene.gltf", "scene: shows no triangles"},
     {"glb_chunk_beyond_file.glb", "glb chunk: claims 4294967280 bytes"},
@@ -47,10 +47,10 @@ const std::map<std::string, std::string> kExpected{
     {"image_no_image.gltf", "image 0: "},
     {"image_parent.gltf", "image 0 '../secret.png': path leaves the scene's folder"},
     {"image_truncated.gltf", "image 0: "},
-    {"image_without_source.gltf", "image 0 'nothing': needs a URI or a buffer view"},
+    {"image_without_source.gltf", "image 0 'nothing': needs exactly one of a URI and a buffer view"},
     {"index_beyond_vertices.gltf", "mesh 0: primitive 0: NORMAL has another length"},
     {"index_value.gltf", "mesh 0: primitive 0: index 3 is beyond its 3 vertices"},
-    {"indices_of_floats.gltf", "mesh 0: primitive 0: indices: accessor 0: is no list of indices"},
+    {"indices_of_floats.gltf", "mesh 0: primitive 0: indices: accessor 0: is not a list of indices"},
     {"infinite_normal.gltf", "mesh 0: primitive 0: NORMAL: accessor 1: element 0 is not a finite number"},
     {"material_missing.gltf", "mesh 0: primitive 0: material 0 does not exist"},
     {"mesh_is_text.gltf", "nodes/0/mesh: is not an integer"},
@@ -59,9 +59,9 @@ const std::map<std::string, std::string> kExpected{
     {"nan_position.gltf", "mesh 0: primitive 0: POSITION: accessor 0: element 1 is not a finite number"},
     {"no_asset.gltf", "asset: has no version"},
     {"nodes_are_numbers.gltf", "nodes: is not a list of objects"},
-    {"not_json.gltf", "json: line 1, column 1: this is no JSON; a scene is a glTF 2.0 file"},
+    {"not_json.gltf", "json: line 1, column 1: this is not JSON; a scene must be a glTF 2.0 file"},
     {"not_utf8.gltf", "json: "},
-    {"number_too_large.gltf", "json: holds numbers or texts that no glTF file has"},
+    {"number_too_large.gltf", "json: holds a number beyond the range of double precision"},
     {"primitive_mode.gltf", "mesh 0: primitive 0: unknown mode 9"},
     {"primitive_two_corners.gltf", "mesh 0: primitive 0: 2 corners do not form triangles"},
     {"primitive_without_attributes.gltf", "json: 'attributes' property is missing"},
@@ -74,7 +74,7 @@ const std::map<std::string, std::string> kExpected{
     {"sparse_float_indices.gltf", "accessor 0: sparse indices have componentType 5126"},
     {"sparse_huge.gltf", "accessor 0: sparse count 2000000000 is out of range"},
     {"sparse_missing_view.gltf", "accessor 0 (sparse values): bufferView 9 does not exist"},
-    {"sparse_offset.gltf", "accessor 0 (sparse values): 6 bytes beyond bufferView 1"},
+    {"sparse_offset.gltf", "accessor 0 (sparse values): ends 6 bytes beyond bufferView 1"},
     {"sparse_unsorted.gltf", "mesh 0: primitive 0: POSITION: accessor 0: sparse indices are out of range or not"},
     {"uri_absent.gltf", "buffer 0: has neither a URI nor a binary chunk"},
     {"uri_absolute.gltf", "buffer 0: absolute path"},
@@ -129,7 +129,7 @@ TEST(MalformedGltf, RefusesLinksThatLeaveTheFolder) {
     EXPECT_THAT(refusal(file), HasSubstr("test.gltf: buffer 0: 'link.bin' leaves the scene's folder"));
     fs::remove(folder.path() / "link.bin");
     folder.write("data.bin", builder.binary);
-    fs::create_symlink(folder.path() / "data.bin", folder.path() / "link.bin"); // within the folder: fine
+    fs::create_symlink(folder.path() / "data.bin", folder.path() / "link.bin"); // a link within the folder is allowed
     EXPECT_NO_THROW(load_scene(file));
 }
 

@@ -11,8 +11,8 @@ using testing::HasSubstr;
 TEST(PathOfUri, DecodesAndNormalises) {
     EXPECT_EQ(path_of_uri("a.bin"), "a.bin");
     EXPECT_EQ(path_of_uri("./a//b%20c/%C3%A9.png"), "a/b c/\xC3\xA9.png");
-    EXPECT_EQ(path_of_uri("..a/b..c/...d"), "..a/b..c/...d"); // only ".." itself leads up
-    EXPECT_EQ(path_of_uri("a/b:c"), "a/b:c");                 // a colon after a slash is no scheme
+    EXPECT_EQ(path_of_uri("..a/b..c/...d"), "..a/b..c/...d"); // only ".." itself means the parent folder
+    EXPECT_EQ(path_of_uri("a/b:c"), "a/b:c");                 // a colon after a slash does not end a scheme
 }
 
 TEST(PathOfUri, RefusesWhatLeavesTheFolder) {

@@ -83,14 +83,14 @@ TEST(TokenList, FindsWhoseTokenItIs) {
 TEST(TokenList, NamesFileAndLineOfWhatItCannotRead) {
     const std::string good = token_line(identity_of("alice", Role::kView, "fc_a"));
     const auto refusal = [](const std::string& text) { return refusal_of([&] { TokenList::parse(text, "t.txt"); }); };
-    EXPECT_THAT(refusal(good + "\nbob"), StartsWith("t.txt:2: a line is NAME ROLE"));
-    EXPECT_THAT(refusal("bob boss sha256:00"), StartsWith("t.txt:1: a role is"));
-    EXPECT_THAT(refusal("b/b view sha256:00"), StartsWith("t.txt:1: a name has"));
+    EXPECT_THAT(refusal(good + "\nbob"), StartsWith("t.txt:2: expected NAME ROLE"));
+    EXPECT_THAT(refusal("bob boss sha256:00"), StartsWith("t.txt:1: the role must be"));
+    EXPECT_THAT(refusal("b/b view sha256:00"), StartsWith("t.txt:1: the name must have"));
     EXPECT_THAT(refusal("bob view sha256:00"), StartsWith("t.txt:1: the third word"));
-    EXPECT_THAT(refusal(good + " more"), StartsWith("t.txt:1: a line is"));
-    EXPECT_THAT(refusal(good + "\n" + good), StartsWith("t.txt:2: the name 'alice' stands in line 1"));
+    EXPECT_THAT(refusal(good + " more"), StartsWith("t.txt:1: expected NAME ROLE"));
+    EXPECT_THAT(refusal(good + "\n" + good), StartsWith("t.txt:2: the name 'alice' is in line 1"));
     EXPECT_THAT(refusal(good + "\n" + token_line(identity_of("bob", Role::kView, "fc_a"))),
-                StartsWith("t.txt:2: this hash stands in line 1"));
+                StartsWith("t.txt:2: this hash is in line 1"));
 }
 
 TEST(TokenList, WithoutLinesNobodyStandsInIt) {
@@ -111,7 +111,7 @@ TEST(TokenList, LinesWithAMistakeCountForNobodyAndTheOthersStillCount) {
     std::vector<std::string> problems;
     const TokenList list = TokenList::read_good_lines(file, problems);
     EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("tokens.txt:2: the third word"),
-                                               HasSubstr("tokens.txt:5: the name 'bob' stands in line 3")));
+                                               HasSubstr("tokens.txt:5: the name 'bob' is in line 3")));
     EXPECT_EQ(list.size(), 2U);
     EXPECT_TRUE(list.find("fc_a").has_value());
     EXPECT_TRUE(list.find("fc_c").has_value());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What sessions of one peer share, and what a session does when it is used up.
 #include "server/session/quality_rungs.h"
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ feed::Demand demand_of_all_qualities(v1::DeliveryMode mode, v1::PlaneSemantic se
     info.max_view_pixels = 1ULL << 40U; // rungs alone have to bound it
     const auto feed = std::make_shared<feed::Feed>(info);
     const TimePoint now{1h};
-    std::vector<std::unique_ptr<Session>> sessions;
+    std::vector<std::unique_ptr<ServerSession>> sessions;
     for (std::uint32_t quality = 1; quality <= kMaxQuality; ++quality) {
         v1::ClientMessage message;
         v1::Configure& wanted = *message.mutable_configure();
@@ -111,7 +111,7 @@ feed::Demand demand_of_all_qualities(v1::DeliveryMode mode, v1::PlaneSemantic se
         preference.set_semantic(semantic);
         preference.add_codecs(codec);
         preference.set_quality(quality);
-        sessions.push_back(std::make_unique<Session>(
+        sessions.push_back(std::make_unique<ServerSession>(
             std::vector{feed}, Limits{}, [](const feed::FramePtr&) {}, now));
         sessions.back()->on_message(message, now);
         EXPECT_TRUE(sessions.back()->configuration()) << quality;
@@ -132,8 +132,8 @@ TEST(EncodingsTest, AHundredQualitiesAreSixEncodings) {
 /// Two sessions of one peer.
 class SharedBudgetTest : public testing::Test {
 protected:
-    std::unique_ptr<Session> open() {
-        return std::make_unique<Session>(
+    std::unique_ptr<ServerSession> open() {
+        return std::make_unique<ServerSession>(
             std::vector{feed_}, limits_, [](const feed::FramePtr&) {}, now_, budgets_);
     }
 
@@ -145,13 +145,13 @@ protected:
     }
 
     /// Hands a new frame to the session and writes all it can; the number of complete frames.
-    int send_frame(Session& session) {
+    int send_frame(ServerSession& session) {
         ++frame_id_;
         session.on_frame(test::synthetic_frame(feed_->info(), feed_->demand(now_), frame_id_, pool_, frame_id_), now_);
         return drain(session);
     }
 
-    int drain(Session& session) {
+    int drain(ServerSession& session) {
         int trailers = 0;
         v1::ServerMessage message;
         for (auto chunk = session.next(now_); chunk; chunk = session.next(now_)) {
@@ -162,7 +162,7 @@ protected:
         return trailers;
     }
 
-    void acknowledge(Session& session, std::uint64_t frame_id) {
+    void acknowledge(ServerSession& session, std::uint64_t frame_id) {
         v1::ClientMessage message;
         message.mutable_frame_ack()->set_frame_id(frame_id);
         message.mutable_frame_ack()->set_epoch(session.epoch());

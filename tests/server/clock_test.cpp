@@ -15,7 +15,7 @@ protected:
         scene_.duration_s = 1.0;
     }
 
-    ops::Config config_;
+    Settings config_;
     scene::Scene scene_;
     ChannelClock::TimePoint now_{1h};
 };
@@ -27,7 +27,7 @@ TEST_F(Clock, RealTimeFollowsTheWallClock) {
 }
 
 TEST_F(Clock, FramesGoOnByOneInterval) {
-    config_.clock = ops::ClockMode::kFrames;
+    config_.clock = ClockMode::kFrames;
     ChannelClock clock(config_, scene_);
     EXPECT_EQ(clock.next(now_).scene_time_ns, 0);
     EXPECT_EQ(clock.next(now_ + 10s).scene_time_ns, 100'000'000);
@@ -47,7 +47,7 @@ TEST_F(Clock, CutsAfterAPauseInRealTimeOnly) {
     real.resume();
     EXPECT_TRUE(real.next(now_ + 100ms).cut);
     EXPECT_FALSE(real.next(now_ + 200ms).cut);
-    config_.clock = ops::ClockMode::kFrames;
+    config_.clock = ClockMode::kFrames;
     ChannelClock frames(config_, scene_);
     frames.next(now_);
     frames.resume();
@@ -55,7 +55,7 @@ TEST_F(Clock, CutsAfterAPauseInRealTimeOnly) {
 }
 
 TEST_F(Clock, LoopsOfFramesRepeatExactly) {
-    config_.clock = ops::ClockMode::kFrames;
+    config_.clock = ClockMode::kFrames;
     config_.loop_frames = 3;
     ChannelClock clock(config_, scene_);
     std::vector<FrameMoment> moments;

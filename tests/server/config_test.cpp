@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The server's --config file: same names as the flags, flags win, every mistake with its place.
-#include "server/ops/flags.h"
+#include "server/command_line/flags.h"
 #include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 
-namespace fieldcast::ops {
+namespace fieldcast::command_line {
 namespace {
 
 using test::TestFolder;
@@ -45,23 +45,23 @@ TEST_F(ConfigFile, SetsWhatFlagsSet) {
              "fps = 12.5\nno-nee = true\nfixed-camera = false\nconvergence = inf\nseed = 7\n");
     EXPECT_THAT(invocation.problems, IsEmpty());
     EXPECT_EQ(invocation.kind, Invocation::Kind::kServe);
-    EXPECT_EQ(invocation.config.channels.size(), 2U);
-    EXPECT_EQ(invocation.config.width_px, 320U);
-    EXPECT_EQ(invocation.config.frames_per_second, 12.5F);
-    EXPECT_FALSE(invocation.config.settings.next_event_estimation);
-    EXPECT_FALSE(invocation.config.has_fixed_camera);
-    EXPECT_EQ(invocation.config.seed, 7U);
+    EXPECT_EQ(invocation.config.rendering.channels.size(), 2U);
+    EXPECT_EQ(invocation.config.rendering.width_px, 320U);
+    EXPECT_EQ(invocation.config.rendering.frames_per_second, 12.5F);
+    EXPECT_FALSE(invocation.config.rendering.render.next_event_estimation);
+    EXPECT_FALSE(invocation.config.rendering.has_fixed_camera);
+    EXPECT_EQ(invocation.config.rendering.seed, 7U);
 }
 
 TEST_F(ConfigFile, FlagsWin) {
     const Invocation invocation =
         read(kScene + "fps = 12\nseed = 7\nno-nee = true\n", {"--fps", "3", "--no-nee=false", "--scene", "README.md"});
     EXPECT_THAT(invocation.problems, IsEmpty());
-    EXPECT_EQ(invocation.config.frames_per_second, 3.0F);
-    EXPECT_EQ(invocation.config.seed, 7U);
-    EXPECT_TRUE(invocation.config.settings.next_event_estimation);
-    ASSERT_EQ(invocation.config.channels.size(), 1U);
-    EXPECT_EQ(invocation.config.channels[0].name, "README");
+    EXPECT_EQ(invocation.config.rendering.frames_per_second, 3.0F);
+    EXPECT_EQ(invocation.config.rendering.seed, 7U);
+    EXPECT_TRUE(invocation.config.rendering.render.next_event_estimation);
+    ASSERT_EQ(invocation.config.rendering.channels.size(), 1U);
+    EXPECT_EQ(invocation.config.rendering.channels[0].name, "README");
 }
 
 TEST_F(ConfigFile, ReportsEveryMistakeWithItsPlace) {
@@ -123,9 +123,9 @@ TEST_F(ConfigFile, PrintsWhatIsInForceAndReadsItBack) {
     const Invocation again = read(printed.text, {"--print-config"});
     EXPECT_THAT(again.problems, IsEmpty());
     EXPECT_EQ(again.text, printed.text);
-    EXPECT_EQ(again.config.device, "a \"b\" \\ c");
-    EXPECT_EQ(again.config.settings.temporal_alpha, 0.25F);
+    EXPECT_EQ(again.config.rendering.device, "a \"b\" \\ c");
+    EXPECT_EQ(again.config.rendering.render.temporal_alpha, 0.25F);
 }
 
 } // namespace
-} // namespace fieldcast::ops
+} // namespace fieldcast::command_line

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For whom a channel makes frames: for those who could take them.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <atomic>
@@ -232,7 +232,8 @@ private:
     std::multimap<TimePoint, feed::FramePtr> ready_;
     std::multimap<TimePoint, v1::ClientMessage> acks_;
     std::shared_ptr<Feed> feed_ = std::make_shared<Feed>(test::synthetic_info());
-    Session session_{{feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
+    ServerSession session_{
+        {feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
 };
 
 ClientRun::Result run(const ClientRun::Manners& manners, bool makes_all = false, milliseconds duration = 10s) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a Configure may hold, and what the largest one costs.
 #include "server/session/field_limits.h"
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <functional>
@@ -112,7 +112,7 @@ protected:
 
     std::shared_ptr<feed::Feed> feed_ = std::make_shared<feed::Feed>(test::synthetic_info());
     TimePoint now_{TimePoint::duration(1h)};
-    Session session_{{feed_}, Limits{}, [](const feed::FramePtr&) {}, now_};
+    ServerSession session_{{feed_}, Limits{}, [](const feed::FramePtr&) {}, now_};
 };
 
 TEST(FieldLimits, EveryFieldThatMayGrowHasOne) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/ops/flags.h"
+#include "server/command_line/flags.h"
 
 #include "core/lightfield/presets.h"
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <unistd.h>
 
-namespace fieldcast::ops {
+namespace fieldcast::command_line {
 namespace {
 
 using testing::AllOf;
@@ -31,83 +31,83 @@ TEST(Flags, DefaultsServeOnLoopback) {
     const Invocation invocation = read({"--scene", kFile});
     EXPECT_THAT(invocation.problems, IsEmpty());
     EXPECT_EQ(invocation.kind, Invocation::Kind::kServe);
-    const Config& config = invocation.config;
-    EXPECT_EQ(config.channels.at(0).name, "CMakeLists");
+    const config::Config& config = invocation.config;
+    EXPECT_EQ(config.rendering.channels.at(0).name, "CMakeLists");
     EXPECT_EQ(config.listen.host, "127.0.0.1");
     EXPECT_EQ(config.listen.port, 50151);
-    EXPECT_EQ(config.width_px, 1280U);
-    EXPECT_EQ(config.height_px, 720U);
-    EXPECT_TRUE(config.has_auto_exposure);
-    EXPECT_TRUE(config.settings.next_event_estimation);
-    EXPECT_EQ(config.lattice.convergence_m, std::numeric_limits<float>::infinity());
+    EXPECT_EQ(config.rendering.width_px, 1280U);
+    EXPECT_EQ(config.rendering.height_px, 720U);
+    EXPECT_TRUE(config.rendering.has_auto_exposure);
+    EXPECT_TRUE(config.rendering.render.next_event_estimation);
+    EXPECT_EQ(config.rendering.lattice.convergence_m, std::numeric_limits<float>::infinity());
 }
 
 TEST(Flags, ReadsEverything) {
-    const Config config = read({"--channel",
-                                "a=CMakeLists.txt",
-                                "--channel",
-                                "b=CMakeLists.txt",
-                                "--sky",
-                                "1,0.5,0",
-                                "--size",
-                                "320x180",
-                                "--fps",
-                                "15",
-                                "--spacing",
-                                "0.05",
-                                "--convergence",
-                                "2.5",
-                                "--spp",
-                                "4",
-                                "--bounces",
-                                "3",
-                                "--no-nee",
-                                "--denoiser",
-                                "none",
-                                "--holes",
-                                "cascade,denoise",
-                                "--exposure",
-                                "1.5",
-                                "--tone-map",
-                                "aces",
-                                "--guard-band",
-                                "1,2,3,4",
-                                "--clock",
-                                "frames",
-                                "--frames",
-                                "30",
-                                "--seed",
-                                "9",
-                                "--listen",
-                                "[::1]:1234",
-                                "--largest-grid",
-                                "4x5",
-                                "--time",
-                                "1.5",
-                                "--fixed-camera",
-                                "--traversal",
-                                "bvh",
-                                "--visibility",
-                                "raster"})
-                              .config;
-    EXPECT_EQ(config.channels.size(), 2U);
-    EXPECT_EQ(config.sky, glm::vec3(1.0F, 0.5F, 0.0F));
-    EXPECT_EQ(config.width_px, 320U);
-    EXPECT_EQ(config.frames_per_second, 15.0F);
-    EXPECT_EQ(config.spacing_m, 0.05F);
-    EXPECT_EQ(config.lattice.convergence_m, 2.5F);
-    EXPECT_EQ(config.settings.samples_per_pixel, 4U);
-    EXPECT_FALSE(config.settings.next_event_estimation);
-    EXPECT_EQ(config.settings.denoiser, Denoiser::kNone);
-    EXPECT_EQ(config.settings.holes, (HoleFilling{false, false, 4, 5, false, true}));
-    EXPECT_EQ(config.settings.exposure, 1.5F);
-    EXPECT_EQ(config.settings.tone_map, ToneMap::kAces);
-    EXPECT_EQ(config.guard_band.bottom_px, 4U);
-    EXPECT_EQ(config.clock, ClockMode::kFrames);
-    EXPECT_EQ(config.loop_frames, 30U);
+    const config::Config config = read({"--channel",
+                                        "a=CMakeLists.txt",
+                                        "--channel",
+                                        "b=CMakeLists.txt",
+                                        "--sky",
+                                        "1,0.5,0",
+                                        "--size",
+                                        "320x180",
+                                        "--fps",
+                                        "15",
+                                        "--spacing",
+                                        "0.05",
+                                        "--convergence",
+                                        "2.5",
+                                        "--spp",
+                                        "4",
+                                        "--bounces",
+                                        "3",
+                                        "--no-nee",
+                                        "--denoiser",
+                                        "none",
+                                        "--holes",
+                                        "cascade,denoise",
+                                        "--exposure",
+                                        "1.5",
+                                        "--tone-map",
+                                        "aces",
+                                        "--guard-band",
+                                        "1,2,3,4",
+                                        "--clock",
+                                        "frames",
+                                        "--frames",
+                                        "30",
+                                        "--seed",
+                                        "9",
+                                        "--listen",
+                                        "[::1]:1234",
+                                        "--largest-grid",
+                                        "4x5",
+                                        "--time",
+                                        "1.5",
+                                        "--fixed-camera",
+                                        "--traversal",
+                                        "bvh",
+                                        "--visibility",
+                                        "raster"})
+                                      .config;
+    EXPECT_EQ(config.rendering.channels.size(), 2U);
+    EXPECT_EQ(config.rendering.sky, glm::vec3(1.0F, 0.5F, 0.0F));
+    EXPECT_EQ(config.rendering.width_px, 320U);
+    EXPECT_EQ(config.rendering.frames_per_second, 15.0F);
+    EXPECT_EQ(config.rendering.spacing_m, 0.05F);
+    EXPECT_EQ(config.rendering.lattice.convergence_m, 2.5F);
+    EXPECT_EQ(config.rendering.render.samples_per_pixel, 4U);
+    EXPECT_FALSE(config.rendering.render.next_event_estimation);
+    EXPECT_EQ(config.rendering.render.denoiser, Denoiser::kNone);
+    EXPECT_EQ(config.rendering.render.holes, (HoleFilling{false, false, 4, 5, false, true}));
+    EXPECT_EQ(config.rendering.render.exposure, 1.5F);
+    EXPECT_EQ(config.rendering.render.tone_map, ToneMap::kAces);
+    EXPECT_EQ(config.rendering.guard_band.bottom_px, 4U);
+    EXPECT_EQ(config.rendering.clock, channel::ClockMode::kFrames);
+    EXPECT_EQ(config.rendering.loop_frames, 30U);
     EXPECT_EQ(config.listen.host, "[::1]");
-    EXPECT_EQ(config.largest_grid.cols, 5U);
-    EXPECT_EQ(config.fixed_time_s, 1.5);
+    EXPECT_EQ(config.rendering.largest_grid.cols, 5U);
+    EXPECT_EQ(config.rendering.fixed_time_s, 1.5);
 }
 
 TEST(Flags, RecordsAndReplays) {
@@ -115,12 +115,12 @@ TEST(Flags, RecordsAndReplays) {
         read({"--scene", kFile, "--record", "out.fcrec", "--record-form", "views:3x3", "--record-form",
               "g-buffer:jpeg:50", "--record-frames", "9", "--replay", "again=README.md", "--replay-fps", "2.5"});
     EXPECT_THAT(both.problems, IsEmpty());
-    EXPECT_EQ(both.config.records.at(0).file, "out.fcrec");
-    EXPECT_EQ(both.config.record_frames, 9U);
-    EXPECT_EQ(both.config.record_forms.at(1).quality, 50);
-    EXPECT_EQ(both.config.replays.at(0).name, "again");
-    EXPECT_EQ(both.config.replays.at(0).file, "README.md");
-    EXPECT_EQ(both.config.replays.at(0).frames_per_second, 2.5F);
+    EXPECT_EQ(both.config.rendering.records.at(0).file, "out.fcrec");
+    EXPECT_EQ(both.config.rendering.record_frames, 9U);
+    EXPECT_EQ(both.config.rendering.record_forms.at(1).quality, 50);
+    EXPECT_EQ(both.config.rendering.replays.at(0).name, "again");
+    EXPECT_EQ(both.config.rendering.replays.at(0).file, "README.md");
+    EXPECT_EQ(both.config.rendering.replays.at(0).frames_per_second, 2.5F);
     EXPECT_THAT(read({"--replay", kFile}).problems, IsEmpty()) << "a replay needs no scene";
 }
 
@@ -145,9 +145,9 @@ TEST(Flags, SayWhoSteersWhichCamera) {
     const Invocation all = read({"--channel", "a=CMakeLists.txt", "--channel", "b=CMakeLists.txt", "--camera-control",
                                  "b=scripted", "--camera-control", "steered", "--steering-lease", "1.5"});
     EXPECT_THAT(all.problems, IsEmpty());
-    EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kSteered);
-    EXPECT_EQ(all.config.channels.at(1).control, std::nullopt) << "what is said of one channel wins";
-    EXPECT_EQ(all.config.steering_lease, std::chrono::milliseconds(1500));
+    EXPECT_EQ(all.config.rendering.channels.at(0).control, feed::CameraControl::kSteered);
+    EXPECT_EQ(all.config.rendering.channels.at(1).control, std::nullopt) << "what is said of one channel wins";
+    EXPECT_EQ(all.config.rendering.steering_lease, std::chrono::milliseconds(1500));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "c=steered"}).problems, Contains(HasSubstr("no channel")));
     EXPECT_THAT(read({"--scene", kFile, "--camera-control", "driven"}).problems,
                 Contains(HasSubstr("scripted, steered or own")));
@@ -159,9 +159,9 @@ TEST(Flags, GiveEveryClientACamera) {
     const Invocation all =
         read({"--scene", kFile, "--camera-control", "own", "--max-own-cameras", "7", "--own-camera-budget", "250"});
     EXPECT_THAT(all.problems, IsEmpty());
-    EXPECT_EQ(all.config.channels.at(0).control, feed::CameraControl::kOwn);
+    EXPECT_EQ(all.config.rendering.channels.at(0).control, feed::CameraControl::kOwn);
     EXPECT_EQ(all.config.limits.max_own_cameras, 7U);
-    EXPECT_EQ(all.config.own_camera_budget_ms, 250.0);
+    EXPECT_EQ(all.config.rendering.own_cameras.max_ms_per_second, 250.0);
     EXPECT_THAT(read({"--scene", kFile, "--max-own-cameras", "0"}).problems,
                 Contains(HasSubstr("--max-own-cameras 0: 1 to")));
     EXPECT_EQ(read({"--scene", kFile, "--max-own-cameras-per-peer", "2"}).config.limits.max_own_cameras_per_peer, 2U);
@@ -199,9 +199,10 @@ TEST(Flags, MetricsStayOnLoopbackToo) {
 }
 
 TEST(Flags, ReadsAndChecksLimits) {
-    const Config config = read({"--scene", kFile, "--max-sessions-per-peer", "3", "--max-bytes-in-flight-in-total",
-                                "1000", "--max-opens-per-second-per-peer", "0.5"})
-                              .config;
+    const config::Config config =
+        read({"--scene", kFile, "--max-sessions-per-peer", "3", "--max-bytes-in-flight-in-total", "1000",
+              "--max-opens-per-second-per-peer", "0.5"})
+            .config;
     EXPECT_EQ(config.limits.max_sessions_per_peer, 3U);
     EXPECT_EQ(config.limits.max_bytes_in_flight_in_total, 1000U);
     EXPECT_EQ(config.limits.max_opens_per_second_per_peer, 0.5);
@@ -239,7 +240,7 @@ TEST(Flags, ReportsAccessFilesThatCannotBeUsed) {
     EXPECT_THAT(read({"--scene", kFile, "--tls-client-ca", kFile}).problems,
                 Contains(HasSubstr("--tls-client-ca needs")));
     EXPECT_THAT(read({"--scene", kFile, "--tls-cert", kFile, "--tls-key", kFile}).problems,
-                Contains(HasSubstr("holds no certificate")));
+                Contains(HasSubstr("contains no certificate")));
     EXPECT_THAT(read({"--scene", kFile, "--tokens", kFile}).problems, Contains(HasSubstr("CMakeLists.txt:2: ")));
     EXPECT_THAT(read({"--scene", kFile, "--tokens", "absent.txt"}).problems,
                 Contains(HasSubstr("absent.txt: cannot be read")));
@@ -251,7 +252,7 @@ TEST(Flags, KnowsEveryDenoiser) {
     for (const auto& [word, denoiser] : kWords) {
         const Invocation invocation = read({"--scene", kFile, "--denoiser", word});
         EXPECT_TRUE(invocation.problems.empty()) << word;
-        EXPECT_EQ(invocation.config.settings.denoiser, denoiser) << word;
+        EXPECT_EQ(invocation.config.rendering.render.denoiser, denoiser) << word;
     }
 }
 
@@ -315,25 +316,26 @@ TEST(Flags, PrintsAConfigFileThatItReads) {
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});
     EXPECT_THAT(again.problems, IsEmpty()) << printed.text;
-    EXPECT_EQ(again.config.frames_per_second, 12.0F);
-    EXPECT_FALSE(again.config.settings.next_event_estimation);
-    EXPECT_EQ(again.config.channels.size(), 1U);
+    EXPECT_EQ(again.config.rendering.frames_per_second, 12.0F);
+    EXPECT_FALSE(again.config.rendering.render.next_event_estimation);
+    EXPECT_EQ(again.config.rendering.channels.size(), 1U);
 }
 
 TEST(Flags, APresetGivesDefaultsThatOtherFlagsReplace) {
-    const Config paper = read({"--scene", kFile, "--preset", "paper"}).config;
-    EXPECT_EQ(paper.settings, find_preset("paper", 6, 6)->settings);
-    EXPECT_EQ(paper.guard_band_mode, GuardBandMode::kFixed);
-    const Config other = read({"--scene", kFile, "--preset", "paper", "--accumulate-views", "off", "--denoise", "views",
-                               "--denoiser", "svgf+", "--holes", "cascade", "--guard-band", "auto"})
-                             .config;
-    EXPECT_FALSE(other.settings.accumulate_views);
-    EXPECT_EQ(other.settings.denoised_images, DenoisedImages::kViews);
-    EXPECT_EQ(other.settings.denoiser, Denoiser::kSvgfPlus);
-    EXPECT_EQ(other.settings.holes.cascade_rows, 6U);
-    EXPECT_EQ(other.settings.light_sampling, LightSampling::plain()); // the preset's
-    EXPECT_EQ(other.guard_band_mode, GuardBandMode::kAuto);
-    EXPECT_EQ(read({"--scene", kFile}).config.settings, find_preset("default", 6, 6)->settings);
+    const channel::Settings paper = read({"--scene", kFile, "--preset", "paper"}).config.rendering;
+    EXPECT_EQ(paper.render, find_preset("paper", 6, 6)->settings);
+    EXPECT_EQ(paper.guard_band_mode, channel::GuardBandMode::kFixed);
+    const channel::Settings other =
+        read({"--scene", kFile, "--preset", "paper", "--accumulate-views", "off", "--denoise", "views", "--denoiser",
+              "svgf+", "--holes", "cascade", "--guard-band", "auto"})
+            .config.rendering;
+    EXPECT_FALSE(other.render.accumulate_views);
+    EXPECT_EQ(other.render.denoised_images, DenoisedImages::kViews);
+    EXPECT_EQ(other.render.denoiser, Denoiser::kSvgfPlus);
+    EXPECT_EQ(other.render.holes.cascade_rows, 6U);
+    EXPECT_EQ(other.render.light_sampling, LightSampling::plain()); // the preset's
+    EXPECT_EQ(other.guard_band_mode, channel::GuardBandMode::kAuto);
+    EXPECT_EQ(read({"--scene", kFile}).config.rendering.render, find_preset("default", 6, 6)->settings);
     EXPECT_THAT(read({"--scene", kFile, "--preset", "best"}).problems,
                 Contains(HasSubstr("--preset best: one of reprojected")));
     EXPECT_THAT(read({"--scene", kFile, "--denoise", "blue"}).problems, Contains(HasSubstr("--denoise blue")));
@@ -346,8 +348,8 @@ TEST(Flags, PrintsAPresetThatItReads) {
     std::ofstream(file) << printed.text;
     const Invocation again = read({"--config", file.c_str()});
     EXPECT_THAT(again.problems, IsEmpty()) << printed.text;
-    EXPECT_EQ(again.config.settings, printed.config.settings);
+    EXPECT_EQ(again.config.rendering.render, printed.config.rendering.render);
 }
 
 } // namespace
-} // namespace fieldcast::ops
+} // namespace fieldcast::command_line

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/ops/flags.h"
+#include "server/command_line/flags.h"
 #include "tests/fixtures/test_folder.h"
 
 #include "core/base/error.h"
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-namespace fieldcast::ops {
+namespace fieldcast::command_line {
 namespace {
 
 using testing::HasSubstr;
@@ -74,4 +74,4 @@ TEST(Inspect, AWordThatIsNoTaskIsToldWhatMayBeMeant) {
 }
 
 } // namespace
-} // namespace fieldcast::ops
+} // namespace fieldcast::command_line

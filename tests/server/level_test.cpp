@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the server fits a session to its connection: the controller of levels and the meter, on simulated links.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 
 #include <algorithm>
 #include <deque>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions on a channel that gives each of them a camera.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/fixtures/polling.h"
 #include "tests/server/camera_factory.h"
 
@@ -18,14 +18,14 @@ const feed::Steerer kAnn{.name = "ann", .right = feed::SteeringRight::kSteer};
 
 class OwnSession : public testing::Test {
 protected:
-    std::unique_ptr<Session> open(const feed::Steerer& steerer = kAnn) {
-        return std::make_unique<Session>(
+    std::unique_ptr<ServerSession> open(const feed::Steerer& steerer = kAnn) {
+        return std::make_unique<ServerSession>(
             std::vector{own_, other_, fixed_}, Limits{}, [](const feed::FramePtr&) {}, now_,
             PeerBudgets{.cameras = peer_cameras_}, steerer);
     }
 
     /// The next message that is no heartbeat, or one of no kind.
-    v1::ServerMessage next(Session& session) {
+    v1::ServerMessage next(ServerSession& session) {
         v1::ServerMessage message;
         while (const auto chunk = session.next(now_)) {
             EXPECT_TRUE(message.ParseFromString(wire::joined(*chunk)));
@@ -36,7 +36,7 @@ protected:
         return {};
     }
 
-    v1::ServerMessage configure(Session& session, const std::string& channel, float fps = 1.0F,
+    v1::ServerMessage configure(ServerSession& session, const std::string& channel, float fps = 1.0F,
                                 std::uint32_t side = 1) {
         v1::ClientMessage message;
         v1::Configure& wanted = *message.mutable_configure();
@@ -48,7 +48,7 @@ protected:
         return next(session);
     }
 
-    void steer(Session& session, float x_m) {
+    void steer(ServerSession& session, float x_m) {
         v1::ClientMessage message;
         v1::SteerCamera& steer = *message.mutable_steer_camera();
         for (const float value : {1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, x_m, 0.0F, 0.0F}) {
@@ -58,14 +58,16 @@ protected:
         session.on_message(message, now_);
     }
 
-    void request(Session& session) {
+    void request(ServerSession& session) {
         v1::ClientMessage message;
         message.mutable_request_steering();
         session.on_message(message, now_);
         EXPECT_EQ(next(session).steering_granted().lease(), 1U);
     }
 
-    static const std::shared_ptr<feed::Feed>& feed_of(const Session& session) { return session.configuration()->feed; }
+    static const std::shared_ptr<feed::Feed>& feed_of(const ServerSession& session) {
+        return session.configuration()->feed;
+    }
 
     TimePoint now_ = std::chrono::steady_clock::now(); // as for who leaves a camera
     std::shared_ptr<Budget> peer_cameras_; ///< null: no limit
@@ -194,7 +196,8 @@ TEST_F(OwnSession, APeerHasNoMoreThanItsShare) {
     EXPECT_EQ(configure(*ann, "other").message_case(), Kind::kConfigured) << "one at a time";
     const v1::ServerMessage refused = configure(*bob, "own");
     EXPECT_EQ(refused.refused().reason(), v1::REFUSAL_REASON_EXHAUSTED);
-    EXPECT_THAT(refused.refused().message(), HasSubstr("one peer may have 1, and the last of all 4 go to peers that have none"));
+    EXPECT_THAT(refused.refused().message(),
+                HasSubstr("one peer may have 1 of all 4, and the last are kept for peers that have none"));
     EXPECT_EQ(configure(*bob, "fixed").message_case(), Kind::kConfigured);
     EXPECT_EQ(configure(*ann, "fixed").message_case(), Kind::kConfigured);
     EXPECT_EQ(configure(*bob, "own").message_case(), Kind::kConfigured) << "ann gave hers back";

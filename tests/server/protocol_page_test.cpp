@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of docs/protocol.md, "Limits and deadlines", are those of the code.
-#include "server/ops/config.h"
+#include "server/config/config.h"
 #include "server/session/credits.h"
 
 #include <fstream>
 #include <gmock/gmock.h>
 #include <map>
 
-namespace fieldcast::ops {
+namespace fieldcast::command_line {
 namespace {
 
 using std::chrono::milliseconds;
@@ -55,7 +55,7 @@ std::string seconds(milliseconds value) {
 }
 
 TEST(ProtocolPage, HasTheLimitsOfTheServer) {
-    const Config config;
+    const config::Config config;
     const session::Limits& limits = config.limits;
     const auto page = rows();
     const auto expect = [&](const std::string& row, const std::string& text) {
@@ -79,7 +79,7 @@ TEST(ProtocolPage, HasTheLimitsOfTheServer) {
     expect("messages", std::string("a `Configure` counts as ") + number(session::kConfigureWeight));
     expect("answers that wait to be sent", number(session::kMaxQueuedAnswers) + ";");
     expect("poses", number(limits.max_poses_per_second) + " a second");
-    expect("lease of a camera", std::string("ends ") + seconds(config.steering_lease));
+    expect("lease of a camera", std::string("ends ") + seconds(config.rendering.steering_lease));
     expect("frames in flight", number(session::kMinCredits) + " to " + number(session::kMaxCredits));
     expect("bytes in flight", bytes(limits.max_bytes_in_flight) + ", of one peer " +
                                   bytes(limits.max_bytes_in_flight_per_peer) + ", in total " +
@@ -91,7 +91,7 @@ TEST(ProtocolPage, HasTheLimitsOfTheServer) {
     expect("views", number(kMaxViews) + " of one grid");
     expect("views", std::string("at most ") + number(limits.max_view_set_pixels));
     expect("views of one peer", number(limits.max_pixels_per_peer));
-    expect("views of one channel", number(config.max_channel_pixels));
+    expect("views of one channel", number(config.rendering.max_channel_pixels));
     expect("own cameras", std::string("of one peer ") + number(limits.max_own_cameras_per_peer));
     expect("scene downloads", of_peer(limits.max_scene_downloads, limits.max_scene_downloads_per_peer));
     expect("chunk of a scene that is not read", seconds(limits.stall_deadline));
@@ -99,4 +99,4 @@ TEST(ProtocolPage, HasTheLimitsOfTheServer) {
 }
 
 } // namespace
-} // namespace fieldcast::ops
+} // namespace fieldcast::command_line

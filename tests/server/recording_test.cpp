@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "server/recording/channel_recorder.h"
 #include "server/recording/recorded_form.h"
-#include "server/recording/recorder.h"
 #include "server/recording/replay.h"
 #include "server/session/recorded.h"
 #include "tests/fixtures/test_folder.h"
@@ -190,7 +190,7 @@ TEST_F(RecordingTest, LengthsAreCheckedBeforeMemoryIsTaken) {
 TEST_F(RecordingTest, RecordsAChannelAsItIsPublished) {
     const auto feed = std::make_shared<feed::Feed>(info_);
     {
-        Recorder recorder(feed, {.file = file_, .selections = selections_of(info_), .max_frames = 3}, registry_);
+        ChannelRecorder recorder(feed, {.file = file_, .selections = selections_of(info_), .max_frames = 3}, registry_);
         EXPECT_TRUE(feed->demand().needs_alone) << "clients of a replay join anywhere";
         const auto deadline = std::chrono::steady_clock::now() + kPatience;
         for (std::uint64_t id = 1; !recorder.has_ended(); ++id) {

@@ -3,9 +3,9 @@
 // thread sanitizer. (The distribution's gRPC is built without it, so that handovers between its threads look like
 // races.)
 #include "core/base/guarded.h"
-#include "server/recording/recorder.h"
+#include "server/recording/channel_recorder.h"
 #include "server/recording/replay.h"
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/fixtures/test_folder.h"
 #include "tests/server/synthetic_recording.h"
 
@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 /// A session as a stream keeps it: frames come from the channel's thread, everything else from the client's.
 struct Client {
-    Guarded<std::optional<Session>> session;
+    Guarded<std::optional<ServerSession>> session;
     std::condition_variable frame_came;
 
     static std::shared_ptr<Client> open(const std::shared_ptr<feed::Feed>& feed) {
@@ -73,7 +73,7 @@ TEST(ReplaySessions, ComeAndGo) {
     metrics::Registry registry;
     recording::Replay replay({.file = folder / "hall.fcrec", .name = "", .frames_per_second = 100.0F}, registry);
     recording::Replay other({.file = folder / "hall.fcrec", .name = "other", .frames_per_second = 80.0F}, registry);
-    recording::Recorder recorder(
+    recording::ChannelRecorder recorder(
         replay.feed(), {.file = folder / "again.fcrec", .selections = replay.feed()->info().recorded, .max_frames = 5},
         registry);
     std::vector<std::jthread> clients;

@@ -4,6 +4,7 @@
 #include "core/base/log.h"
 #include "server/access/listening_rule.h"
 #include "server/service/grpc_server.h"
+#include "server/service/grpc_version.h"
 #include "tests/fixtures/certificate_authority.h"
 #include "tests/fixtures/polling.h"
 #include "tests/fixtures/test_folder.h"
@@ -283,8 +284,8 @@ class FatefulTokens : public Security, public testing::WithParamInterface<Fate> 
 
 INSTANTIATE_TEST_SUITE_P(
     All, FatefulTokens,
-    testing::Values(Fate{"LastLineDeleted", [](const auto& file) { write_file(file, ""); }, "nobody may call"},
-                    Fate{"Truncated", [](const auto& file) { std::ofstream{file}; }, "nobody may call"},
+    testing::Values(Fate{"LastLineDeleted", [](const auto& file) { write_file(file, ""); }, "all calls are denied"},
+                    Fate{"Truncated", [](const auto& file) { std::ofstream{file}; }, "all calls are denied"},
                     Fate{"FileDeleted", [](const auto& file) { std::filesystem::remove(file); }, "cannot be read"},
                     Fate{"Folder",
                          [](const auto& file) {
@@ -348,7 +349,7 @@ TEST_F(Security, DamagedLineCountsForNobodyAndTheOthersStay) {
     EXPECT_TRUE(comes_to_status(*server, viewer_, StatusCode::UNAUTHENTICATED));
     EXPECT_TRUE(status_of(server->port(), trusting(authority_), operator_).ok());
     const std::string log = testing::internal::GetCapturedStderr();
-    EXPECT_THAT(log, HasSubstr("a line of the token file counts for nobody"));
+    EXPECT_THAT(log, HasSubstr("line of the token file ignored"));
     EXPECT_THAT(log, HasSubstr("tokens.txt:1"));
     EXPECT_THAT(log, Not(HasSubstr(viewer_)));
 }

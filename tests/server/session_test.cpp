@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,8 @@ protected:
     std::uint64_t frame_id_ = 0;
     WorkerPool pool_{1};
     std::shared_ptr<feed::Feed> feed_ = std::make_shared<feed::Feed>(test::synthetic_info());
-    Session session_{{feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
+    ServerSession session_{
+        {feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
 };
 
 TEST_F(SessionTest, AnswersConfigureBeforeFrames) {
@@ -280,7 +281,7 @@ TEST_F(SessionTest, AnotherLatticeIsAdmittedWithinTheBudgetOnly) {
     grid.set_rows(6);
     grid.set_cols(7);
     grid.set_spacing_x_m(0.5F);
-    Session second(
+    ServerSession second(
         {feed_}, Limits{}, [](const feed::FramePtr&) {}, now_);
     second.on_message(message, now_);
     v1::ServerMessage answer;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who steers a camera: the lease against a clock of its own, and what a session makes of it.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <algorithm>
@@ -223,8 +223,12 @@ protected:
     TimePoint now_ = std::chrono::steady_clock::now(); // as for who leaves a camera
     std::shared_ptr<feed::Feed> steered_ = std::make_shared<feed::Feed>(steered_info());
     std::shared_ptr<feed::Feed> fixed_ = std::make_shared<feed::Feed>(test::synthetic_info("fixed"));
-    Session session_{{steered_, fixed_}, Limits{}, [](const feed::FramePtr&) {}, now_, {},
-                     {.name = "ann", .right = feed::SteeringRight::kSteer}};
+    ServerSession session_{{steered_, fixed_},
+                           Limits{},
+                           [](const feed::FramePtr&) {},
+                           now_,
+                           {},
+                           {.name = "ann", .right = feed::SteeringRight::kSteer}};
 };
 
 TEST_F(SteeringSession, SteersTheCameraOfItsChannel) {

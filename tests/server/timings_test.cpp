@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // When frames were where, as a session sees it.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,8 @@ protected:
     WorkerPool pool_{1};
     TimePoint now_{TimePoint::duration(1h)};
     std::uint64_t frame_id_ = 0;
-    Session session_{{feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
+    ServerSession session_{
+        {feed_}, Limits{}, [this](const feed::FramePtr& frame) { session_.on_frame(frame, now_); }, now_};
 };
 
 TEST_F(TimingsTest, AShownFrameIsFinishedByItsSecondAcknowledgement) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What strangers type: every mistake is found before anything starts, and told as flag, problem and what to do.
-#include "server/ops/flags.h"
+#include "server/command_line/flags.h"
 #include "tests/fixtures/test_folder.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace fieldcast::ops {
+namespace fieldcast::command_line {
 namespace {
 
 using test::TestFolder;
@@ -115,4 +115,4 @@ TEST_F(Typos, AFileThatIsNoTomlIsTheOnlyProblem) {
 }
 
 } // namespace
-} // namespace fieldcast::ops
+} // namespace fieldcast::command_line

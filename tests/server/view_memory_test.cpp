@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory of the device that clients make the server take.
-#include "server/session/session.h"
+#include "server/session/server_session.h"
 #include "tests/server/synthetic.h"
 
 #include <gmock/gmock.h>
@@ -55,7 +55,7 @@ TEST_F(ViewMemoryTest, WhatDoesNotFitIsRefusedWithTheNumbers) {
     const auto other = make_feed();
     const auto refused = subscribe(other, selection(*other, 3));
     ASSERT_FALSE(refused.has_value()) << "all channels share the budget";
-    EXPECT_THAT(refused.error(), HasSubstr(std::to_string(bytes_of(3)) + " bytes more"));
+    EXPECT_THAT(refused.error(), HasSubstr(std::to_string(bytes_of(3)) + " more bytes"));
     EXPECT_THAT(refused.error(),
                 HasSubstr(std::to_string(bytes_of(3)) + " of " + std::to_string(bytes_of(6)) + " are in use"));
     EXPECT_TRUE(small->change(selection(*feed_, 7)).has_value());
@@ -103,7 +103,8 @@ TEST_F(ViewMemoryTest, AFeedThatGoesGivesAllBack) {
 
 TEST_F(ViewMemoryTest, ASessionIsToldThatMemoryIsExhausted) {
     const TimePoint now{1h};
-    Session session({feed_}, Limits{}, [](const feed::FramePtr&) {}, now);
+    ServerSession session(
+        {feed_}, Limits{}, [](const feed::FramePtr&) {}, now);
     v1::ClientMessage message;
     message.mutable_configure()->mutable_grid()->set_rows(1);
     message.mutable_configure()->mutable_grid()->set_cols(7);

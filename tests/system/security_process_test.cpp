@@ -132,7 +132,7 @@ TEST_F(ProtectedServer, ServesWhoHasATokenAndWritesNoSecretAnywhere) {
     EXPECT_EQ(run_client(encrypted, {"--tls-ca", ca}), 2);
     EXPECT_THAT(said_, HasSubstr("--token-file"));
     EXPECT_EQ(run_client(encrypted, {"--tls-ca", ca}, {"FIELDCAST_TOKEN=fc_not_a_known_one"}), 2);
-    EXPECT_THAT(said_, HasSubstr("does not know the token"));
+    EXPECT_THAT(said_, HasSubstr("unknown token"));
     everything += said_;
     EXPECT_EQ(run_in_vain(encrypted, {"--token-file", token_file}), 1) << "the system does not trust our authority";
     EXPECT_THAT(said_, HasSubstr("--tls-ca"));
@@ -177,10 +177,10 @@ TEST_F(ProtectedServer, LetsNobodyInOnceTheTokenFileIsEmptyOrGone) {
         is_deleted ? static_cast<void>(std::filesystem::remove(folder_ / "tokens.txt"))
                    : write_file(folder_ / "tokens.txt", "");
         EXPECT_EQ(client.exit_code(5s), 2) << client.text();
-        EXPECT_THAT(client.text(), HasSubstr("does not know the token"));
+        EXPECT_THAT(client.text(), HasSubstr("unknown token"));
         EXPECT_EQ(run_client(server, access), 2) << said_;
         EXPECT_THAT(server_->text(),
-                    HasSubstr(is_deleted ? "tokens.txt: cannot be read" : "there is no token in force"));
+                    HasSubstr(is_deleted ? "tokens.txt: cannot be read" : "token file without tokens"));
     }
     EXPECT_THAT(server_->text(), HasSubstr("reason=revoked"));
 }

@@ -80,14 +80,14 @@ void Accumulation::bind() {
         set.set(shared::kTemporalPreviousLength, before.length_view);
         set.set(shared::kTemporalDiffuse, noisy_.diffuse.view);
         set.set(shared::kTemporalSpecular, noisy_.specular.view);
-        // Never read unless it is kept apart.
+        // Kernels read this binding only if punctual light is accumulated apart.
         const bool is_apart = static_cast<bool>(noisy_punctual_.buffer);
         set.set(shared::kTemporalPunctual, is_apart ? noisy_punctual_.view : noisy_.diffuse.view);
         set.set(shared::kTemporalPreviousPunctual, is_apart ? before.punctual.view : before.light.diffuse.view);
     }
 }
 
-void Accumulation::record(gpu::Recorder& recorder, const FilterFrame& frame, const Options& options) {
+void Accumulation::record(gpu::CommandRecorder& recorder, const FilterFrame& frame, const Options& options) {
     if (options.keeps_taps && !taps_) {
         taps_ = gpu::Buffer(device_, static_cast<std::uint64_t>(texel_count_) * sizeof(shared::HistoryTaps));
     }

@@ -8,9 +8,9 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr float kFilteredShare = 0.5F; // of α: the paper's 0.1 beside 0.2
+constexpr float kFilteredShare = 0.5F; // of α: the paper uses 0.1 here and 0.2 for noisy light
 
-/// Where the grid of blocks lies in sixteen successive frames, so that no edge of a block stays: the paper's offsets.
+/// Offsets in pixels of the grid of blocks in sixteen successive frames, as in the paper. They hide block edges.
 constexpr std::array kGridOffsets{glm::ivec2(-14, -14), glm::ivec2(4, -6),   glm::ivec2(-8, 14),  glm::ivec2(8, 0),
                                   glm::ivec2(-10, -8),  glm::ivec2(2, 12),   glm::ivec2(12, -12), glm::ivec2(-10, 0),
                                   glm::ivec2(12, 14),   glm::ivec2(-8, -16), glm::ivec2(6, 6),    glm::ivec2(-2, -2),
@@ -61,7 +61,7 @@ void Bmfr::bind() {
     }
 }
 
-const Light& Bmfr::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+const Light& Bmfr::record(gpu::CommandRecorder& recorder, const FilterFrame& frame) {
     const glm::uvec2 blocks = block_counts(frame.width, frame.height);
     resize(blocks.x * blocks.y * frame.page_count);
     const Light& result = filtered_[accumulation_.current()];

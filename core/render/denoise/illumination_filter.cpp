@@ -7,7 +7,7 @@ IlluminationFilter::IlluminationFilter(const gpu::Device& device, const scene::G
     : accumulation_(device, scene), svgf_(device, accumulation_), bmfr_(device, accumulation_),
       punctual_(device, accumulation_), result_(&accumulation_.noisy()) {}
 
-void IlluminationFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+void IlluminationFilter::record(gpu::CommandRecorder& recorder, const FilterFrame& frame) {
     if (frame.is_still || frame.settings.denoiser != Denoiser::kBmfr) {
         bmfr_.forget();
     }

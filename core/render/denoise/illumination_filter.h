@@ -7,33 +7,33 @@
 
 namespace fieldcast::render {
 
-/// What happens between path tracing and packing: accumulation over time and the denoiser that the settings ask for.
+/// The passes between path tracing and packing: accumulation over time, then the denoiser chosen by the settings.
 class IlluminationFilter {
 public:
     IlluminationFilter(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// `texel_count`: pixels of all pages. `is_punctual_apart`: the path tracer writes diffuse light that comes
-    /// straight from punctual lights to `noisy_punctual()`; only for SVGF+.
+    /// `texel_count`: pixels of all pages. `is_punctual_apart`: the path tracer writes direct diffuse light of punctual
+    /// lights to `noisy_punctual()`; only for SVGF+.
     void resize(std::uint32_t texel_count, bool is_punctual_apart = false) {
         accumulation_.resize(texel_count, is_punctual_apart);
     }
 
-    /// Where the path tracer writes its noisy illumination, and source_surfaces.comp the geometry of this frame.
+    /// Targets of this frame: the path tracer writes noisy illumination, source_surfaces.comp writes the geometry.
     const gpu::Buffer& noisy_diffuse() const { return accumulation_.noisy().diffuse.buffer; }
     const gpu::Buffer& noisy_specular() const { return accumulation_.noisy().specular.buffer; }
     const gpu::Buffer& noisy_punctual() const { return accumulation_.noisy_punctual().buffer; }
     const gpu::Buffer& geometry() const { return accumulation_.now().geometry; }
     const gpu::Buffer& previous_geometry() const { return accumulation_.before().geometry; }
 
-    /// Records what the settings ask for. The result is in `diffuse()` and `specular()`.
-    void record(gpu::Recorder& recorder, const FilterFrame& frame);
+    /// Records the passes that the settings choose. The result is in `diffuse()` and `specular()`.
+    void record(gpu::CommandRecorder& recorder, const FilterFrame& frame);
     const gpu::Buffer& diffuse() const { return result_->diffuse.buffer; }
     const gpu::Buffer& specular() const { return result_->specular.buffer; }
 
-    /// What is to be added to `diffuse()`; null: nothing.
+    /// Illumination that the caller adds to `diffuse()`; null: none.
     const gpu::Buffer* punctual() const { return punctual_result_; }
 
-    /// This frame's data become the history of the next one.
+    /// Makes this frame's data the history of the next frame.
     void swap() { accumulation_.swap(); }
 
 private:

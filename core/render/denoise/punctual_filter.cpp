@@ -37,12 +37,12 @@ void PunctualFilter::bind() {
             set.set(shared::kFilterMoments, now.moments_view);
             set.set(shared::kFilterLength, now.length_view);
             set.set(shared::kFilterDiffuse, light.view);
-            set.set(shared::kFilterSpecular, light.view); // not read
+            set.set(shared::kFilterSpecular, light.view); // bound, but the kernel does not read it
         }
     }
 }
 
-const gpu::Buffer& PunctualFilter::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+const gpu::Buffer& PunctualFilter::record(gpu::CommandRecorder& recorder, const FilterFrame& frame) {
     resize();
     shared::FilterPunctualParams params{};
     params.cameras = frame.cameras;
@@ -51,12 +51,12 @@ const gpu::Buffer& PunctualFilter::record(gpu::Recorder& recorder, const FilterF
     params.height = frame.height;
     params.page_count = frame.page_count;
     params.source_count = frame.source_count;
-    params.sigma_luminance = 1.0F; // little noise: less than SVGF+
-    params.sigma_depth = 1.0F;     // as SVGF+
+    params.sigma_luminance = 1.0F; // below SVGF+, because this light has little noise
+    params.sigma_depth = 1.0F;     // as in SVGF+
     params.normal_squarings = 5;
     params.alpha = frame.least_weight;
     recorder.stage("denoise_punctual");
-    std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
+    std::uint32_t input = 0; // index of the binding set: 0 history, 1 and 2 scratch
     for (std::uint32_t level = 0; level < kLevels; ++level) {
         const std::uint32_t output = input == 1 ? 2 : 1;
         params.step = 1U << level;

@@ -5,14 +5,15 @@
 
 namespace fieldcast::render {
 
-/// Filters diffuse light that comes straight from punctual lights, which is accumulated apart: two levels of SVGF+'s
-/// edge-avoiding filter, led by the variance of this light alone. Shadows of a sun stay sharp however noisy the sky is.
+/// Filters direct diffuse light of punctual lights, which is accumulated apart. Two levels of SVGF+'s edge-avoiding
+/// filter use the variance of this light alone, so a noisy sky does not blur the sun's shadows.
 class PunctualFilter {
 public:
     PunctualFilter(const gpu::Device& device, const Accumulation& accumulation);
 
-    /// After the accumulation. The result, rgb and variance, stays valid until the next call.
-    const gpu::Buffer& record(gpu::Recorder& recorder, const FilterFrame& frame);
+    /// Records the filter; call after Accumulation::record(). The result (rgb, variance) stays valid until the next
+    /// call.
+    const gpu::Buffer& record(gpu::CommandRecorder& recorder, const FilterFrame& frame);
 
 private:
     void resize();
@@ -24,7 +25,7 @@ private:
     gpu::Kernel kernel_;
     std::uint64_t resize_count_ = 0;
     std::array<LightBuffer, 2> scratch_;                 ///< ping-pong
-    std::array<std::array<gpu::BindingSet, 3>, 2> sets_; ///< by current history: reads that, scratch 0, scratch 1
+    std::array<std::array<gpu::BindingSet, 3>, 2> sets_; ///< [current history][input: history, scratch 0, scratch 1]
 };
 
 } // namespace fieldcast::render

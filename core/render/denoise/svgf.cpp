@@ -8,16 +8,16 @@ namespace fieldcast::render {
 
 namespace {
 
-/// What tells SVGF+ from SVGF, whose values are those of its paper.
+/// Parameters in which SVGF and SVGF+ differ. The defaults are those of the SVGF paper.
 struct Tuning {
     float sigma_luminance = 4.0F;
     float sigma_depth = 1.0F;
-    std::uint32_t normal_squarings = 7; // 128
+    std::uint32_t normal_squarings = 7; // exponent 2^7 = 128
     std::uint32_t levels = 5;
-    int outer_radius = 2;               // taps of the levels after the first
-    float slow_share = 1.0F;            // of α: least weight of a frame in illumination
+    int outer_radius = 2;               // radius in taps of the levels after the first
+    float slow_share = 1.0F;            // share of α: least weight of a frame in illumination
     bool follows_lobes = false;
-    bool limits_outliers = false;       // in the last level: earlier, sparse light would be lost
+    bool limits_outliers = false;       // only in the last level; in earlier ones sparse light would be lost
     bool feeds_back = true;             // the first level's result replaces the history
 };
 
@@ -76,8 +76,8 @@ void Svgf::bind() {
     }
 }
 
-// Variance estimate, then the levels. SVGF: the first level's colour replaces the history (SVGF, section 4.3).
-const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
+// Variance estimate, then the levels. In SVGF the first level's colour replaces the history (paper, section 4.3).
+const Light& Svgf::record(gpu::CommandRecorder& recorder, const FilterFrame& frame) {
     resize();
     const Tuning& tuning = tuning_of(frame.settings.denoiser);
     shared::FilterParams params{};
@@ -93,7 +93,7 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     params.follows_lobes = tuning.follows_lobes ? 1 : 0;
     params.alpha = frame.settings.temporal_alpha * tuning.slow_share;
     recorder.stage("denoise");
-    std::uint32_t input = 0; // filter set: 0 history, 1 and 2 scratch
+    std::uint32_t input = 0; // index of the binding set: 0 history, 1 and 2 scratch
     const auto run = [&](const gpu::Kernel& kernel, std::uint32_t output) {
         params.diffuse = scratch_[output - 1].diffuse.buffer.address();
         params.specular = scratch_[output - 1].specular.buffer.address();
@@ -117,7 +117,7 @@ const Light& Svgf::record(gpu::Recorder& recorder, const FilterFrame& frame) {
     return scratch_[input - 1];
 }
 
-void Svgf::keep_as_history(gpu::Recorder& recorder, const Light& light) {
+void Svgf::keep_as_history(gpu::CommandRecorder& recorder, const Light& light) {
     const std::uint64_t bytes = static_cast<std::uint64_t>(texel_count_) * 16;
     recorder.copy(light.diffuse.buffer, accumulation_.now().light.diffuse.buffer, bytes);
     recorder.copy(light.specular.buffer, accumulation_.now().light.specular.buffer, bytes);

@@ -35,9 +35,19 @@ std::vector<std::uint32_t> words_of(const Plane& plane) {
     return words;
 }
 
+/// Keeps the low 16 bits of each word of 32.
+void keep_low_halves(std::vector<std::byte>& bytes) {
+    const std::size_t count = bytes.size() / 4;
+    for (std::size_t i = 0; i < count; ++i) {
+        bytes[2 * i] = bytes[4 * i];
+        bytes[2 * i + 1] = bytes[4 * i + 1];
+    }
+    bytes.resize(count * 2);
+}
+
 } // namespace
 
-SourcePlanes::SourcePlanes(const gpu::Device& device) : device_(device) {}
+SourcePlanes::SourcePlanes(const gpu::Device& device) : device_(device), readback_(device) {}
 
 void SourcePlanes::resize(const FrameHeader& header) {
     header_ = header;
@@ -55,19 +65,18 @@ void SourcePlanes::resize(const FrameHeader& header) {
 SourceFrame SourcePlanes::download(std::span<const PlaneSemantic> wanted) const {
     SourceFrame frame{header_, {}};
     const Camera widened = camera();
+    std::vector<gpu::ReadbackPart> parts;
     for (const PlaneSemantic semantic : wanted) {
         Plane plane{semantic, usual_format(semantic), widened.width_px, plane_height(header_, semantic), {}};
         plane.bytes.resize(static_cast<std::size_t>(plane.width_px) * plane.height_px * 4);
-        gpu::read_buffer(device_, planes_[index_of(semantic)], plane.bytes);
-        if (plane.format == PlaneFormat::kRg8) { // from the low half of each word
-            const std::size_t count = plane.bytes.size() / 4;
-            for (std::size_t i = 0; i < count; ++i) {
-                plane.bytes[2 * i] = plane.bytes[4 * i];
-                plane.bytes[2 * i + 1] = plane.bytes[4 * i + 1];
-            }
-            plane.bytes.resize(count * 2);
+        frame.planes.push_back(std::move(plane)); // its bytes stay where they are when the vector grows
+        parts.push_back({.buffer = &planes_[index_of(semantic)], .bytes = frame.planes.back().bytes});
+    }
+    readback_.read(std::move(parts));
+    for (Plane& plane : frame.planes) {
+        if (plane.format == PlaneFormat::kRg8) {
+            keep_low_halves(plane.bytes);
         }
-        frame.planes.push_back(std::move(plane));
     }
     return frame;
 }

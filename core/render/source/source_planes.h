@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/gpu/buffer.h"
+#include "core/gpu/readback.h"
 #include "core/lightfield/source_frame.h"
 #include "core/lightfield/vocabulary.h"
 
@@ -16,22 +16,23 @@ inline constexpr std::array kSourceSemantics{PlaneSemantic::kDiffuse, PlaneSeman
                                              PlaneSemantic::kDepth,   PlaneSemantic::kNormal,
                                              PlaneSemantic::kId,      PlaneSemantic::kMaterial};
 
-/// A SourceFrame on the device, in wire precision: what views are made from on both sides.
-/// One 32-bit word per pixel and plane (kMaterial: in the low 16 bits). Every plane has all pages (lightfield's
-/// page_count()), one after the other; of the G-buffer planes those of layers do not travel: who holds the scene can
-/// make them.
+/// A SourceFrame on the device, in wire precision. Server and clients make views from it. One 32-bit word per pixel and
+/// plane (kMaterial: in the low 16 bits). Every plane has all pages (lightfield's page_count()), one after the other.
+/// G-buffer pages of layers are not sent, because a client with the scene can make them.
 class SourcePlanes {
 public:
     explicit SourcePlanes(const gpu::Device& device);
 
-    /// Makes room for the planes of `header` and keeps the header. Contents are undefined afterwards.
+    /// Allocates the planes of `header` and keeps the header. The contents are undefined afterwards. Throws
+    /// VulkanError.
     void resize(const FrameHeader& header);
 
-    /// Copies planes to the host (the wire's SourceFrame).
+    /// Copies planes to the host, all in one submission (the wire's SourceFrame). Blocks. Not by several threads at
+    /// once: they would share the staging buffer.
     SourceFrame download(std::span<const PlaneSemantic> wanted) const;
 
-    /// Takes the planes of `frame`; those it lacks stay undefined. Fails if a plane has a wrong size or format. Normals
-    /// may be kOct2x8; kTotalLight becomes both kDiffuse and kSpecular.
+    /// Uploads the planes of `frame`; planes that it lacks stay undefined. Fails if a plane has a wrong size or format.
+    /// Normals may be kOct2x8. kTotalLight becomes both kDiffuse and kSpecular.
     Decoded<bool> upload(const SourceFrame& frame);
 
     const FrameHeader& header() const { return header_; }
@@ -49,6 +50,7 @@ private:
     std::uint32_t pixel_count_ = 0;
     std::uint32_t allocated_texels_ = 0;
     std::array<gpu::Buffer, kSourceSemantics.size()> planes_;
+    mutable gpu::Readback readback_;
 };
 
 } // namespace fieldcast::render

@@ -41,25 +41,25 @@ struct SourceRenderer::State {
     struct Packed {
         const gpu::Buffer& diffuse;
         const gpu::Buffer& specular;
-        const gpu::Buffer* punctual = nullptr; ///< more diffuse light, if not null
+        const gpu::Buffer* punctual = nullptr; ///< diffuse light to add; null: none
     };
     void pack_pages(std::uint32_t first, std::uint32_t count, const Packed& light);
 
     const gpu::Device& device;
     const scene::GpuScene& scene;
-    gpu::Recorder recorder;
+    gpu::CommandRecorder recorder;
     SourcePlanes planes;
     SourceSurfaces surfaces;
     IlluminationFilter filter;
     gpu::Kernel trace;
     gpu::Kernel pack;
-    gpu::Buffer cameras; ///< current, previous
+    gpu::Buffer cameras; ///< CameraRecords of this frame, then of the previous one
     gpu::Buffer invalid_samples;
-    std::unique_ptr<LightMerger> merger; ///< null before somebody wants it
-    std::vector<Camera> previous; ///< of the sources of the frame before
-    FrameHeader last;             ///< header of that frame
+    std::unique_ptr<LightMerger> merger; ///< null until the first total_light()
+    std::vector<Camera> previous; ///< source cameras of the previous frame
+    FrameHeader last;             ///< header of the previous frame
     bool is_punctual_apart = false;
-    bool has_stored_history = false; ///< the frame before accumulated or filtered
+    bool has_stored_history = false; ///< the previous frame was accumulated or filtered
 };
 
 bool SourceRenderer::State::has_history(const FrameHeader& header) const {
@@ -69,7 +69,7 @@ bool SourceRenderer::State::has_history(const FrameHeader& header) const {
            previous[0].height_px == now.height_px;
 }
 
-// Frames without motion up to this one, as far as they are averaged.
+// Number of averaged frames without motion that precede this one; 0 if this one differs or averaging is off.
 std::uint32_t SourceRenderer::State::still_frames(const FrameHeader& header) const {
     const bool is_still = !previous.empty() && !header.cut && header.source == last.source &&
                           header.source_positions == last.source_positions && header.guard_band == last.guard_band &&
@@ -134,8 +134,8 @@ void SourceRenderer::State::record_filter(bool has_history, bool is_still) {
                              .settings = header.settings});
 }
 
-// Where views are denoised, the source's light stays as it was traced. Only layers, which no view denoises, are
-// filtered.
+// If views are denoised, the source's light is packed as traced. Only its layers are filtered, because views do not
+// denoise them.
 void SourceRenderer::State::record_pack() {
     const std::uint32_t pages = planes.page_count();
     const std::uint32_t noisy_pages = denoises_views(planes.header()) ? planes.source_count() : 0;
@@ -175,7 +175,7 @@ const SourcePlanes& SourceRenderer::render(const FrameHeader& header) {
     timed.layer_count = s.scene.has_blend() ? kMaxLayers : 0;
     timed.still_frames = s.still_frames(header);
     const bool is_still = timed.still_frames > 0;
-    const bool has_history = is_still ? timed.still_frames > 1 // a series begins with its own first frame
+    const bool has_history = is_still ? timed.still_frames > 1 // the average must not include frames before the series
                                       : s.has_history(header) && header.settings.temporal_accumulation;
     s.planes.resize(timed);
     s.is_punctual_apart = keeps_punctual_apart(timed) && !s.scene.scene().lights.empty();
@@ -218,7 +218,7 @@ struct SurfacePlanesRenderer::State {
         : device(d), recorder(d), surfaces(d, s), cameras(d, kMaxSources * sizeof(shared::CameraRecord)) {}
 
     const gpu::Device& device;
-    gpu::Recorder recorder;
+    gpu::CommandRecorder recorder;
     SourceSurfaces surfaces;
     gpu::Buffer cameras;
     gpu::Buffer geometry;

@@ -14,7 +14,7 @@ SourceSurfaces::SourceSurfaces(const gpu::Device& device, const scene::GpuScene&
       surfaces_(make_scene_kernel(device, scene, KernelId::kSourceSurfaces, sizeof(shared::SourceSurfacesParams))),
       groups_(device), tiles_(device) {}
 
-void SourceSurfaces::record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
+void SourceSurfaces::record(gpu::CommandRecorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
                             const gpu::Buffer& geometry) {
     const Camera widened = planes.camera();
     const std::uint64_t padded = std::uint64_t{view_stride(widened.width_px, widened.height_px)} * planes.source_count();

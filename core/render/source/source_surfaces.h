@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "core/render/group_list.h"
 #include "core/render/source/source_planes.h"
 #include "core/scene/gpu_scene.h"
 
 namespace fieldcast::render {
 
-/// Visibility of the sources and the G-buffer planes computed from it. Used by the server for its source frames and by
-/// clients that rebuild the planes themselves: the same kernels, hence the same bits.
+/// Visibility of the sources and the G-buffer planes computed from it. The server uses it for source frames, clients
+/// that rebuild the planes use it, too: the same kernels give the same bits.
 class SourceSurfaces {
 public:
     SourceSurfaces(const gpu::Device& device, const scene::GpuScene& scene);
 
     /// Records visibility and surfaces for all pages of `planes` (sized for its header). `cameras` is the device
     /// address of the sources' CameraRecords; `geometry` a buffer of GeometryTexel.
-    void record(gpu::Recorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
+    void record(gpu::CommandRecorder& recorder, const SourcePlanes& planes, std::uint64_t cameras,
                 const gpu::Buffer& geometry);
 
     const gpu::Buffer& visibility() const { return visibility_; }
     const gpu::Buffer& layers() const { return layers_; }
-    /// Of all pages, those with a surface: groups of kLinearGroup pixels with those around them, and tiles.
+    /// Parts of all pages that show a surface: groups of kLinearGroup pixels and the groups around them, or tiles.
     const GroupList& groups() const { return groups_; }
     const GroupList& tiles() const { return tiles_; }
 

@@ -7,7 +7,7 @@ namespace fieldcast::render {
 
 namespace {
 
-/// Index of `position` among `positions`, which gets it if it is not there.
+/// Index of `position` in `positions`; a missing one is appended.
 std::uint32_t index_of(std::vector<LatticePosition>& positions, LatticePosition position) {
     const auto found = std::ranges::find(positions, position);
     const auto index = static_cast<std::uint32_t>(found - positions.begin());

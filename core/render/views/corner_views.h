@@ -8,7 +8,8 @@
 
 namespace fieldcast::render {
 
-/// Indices of the views whose holes fill those of the others; positions that are missing are added.
+/// Indices of the views whose holes fill those of the other views. Corner positions that are missing are appended to
+/// `positions`.
 std::vector<std::uint32_t> choose_corners(const HoleFilling& holes, std::vector<LatticePosition>& positions);
 
 } // namespace fieldcast::render

@@ -153,7 +153,7 @@ glm::mat4 DrawnVisibility::clip_from_group(const glm::mat4& clip_from_world, con
     return group.node == scene::kNone ? clip_from_world : clip_from_world * nodes[group.node];
 }
 
-void DrawnVisibility::record(gpu::Recorder& recorder, const VisibilityBatch& batch) {
+void DrawnVisibility::record(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) {
     resize(batch);
     const std::uint64_t pixels = batch_stride(batch);
     for (std::size_t first = 0; first < batch.cameras.size(); first += kViewsAtOnce) {
@@ -176,7 +176,7 @@ void DrawnVisibility::record(gpu::Recorder& recorder, const VisibilityBatch& bat
     }
 }
 
-void DrawnVisibility::draw_view(gpu::Recorder& recorder, const VisibilityBatch& batch, std::size_t view,
+void DrawnVisibility::draw_view(gpu::CommandRecorder& recorder, const VisibilityBatch& batch, std::size_t view,
                                 std::uint32_t layer) const {
     const glm::mat4 clip = clip_from_world(batch.cameras[view], near_m_);
     gpu::RasterPass pass(recorder, target_, layer);
@@ -198,7 +198,7 @@ void DrawnVisibility::draw_view(gpu::Recorder& recorder, const VisibilityBatch& 
     }
 }
 
-void DrawnVisibility::name_triangles(gpu::Recorder& recorder, const VisibilityBatch& batch) const {
+void DrawnVisibility::name_triangles(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) const {
     shared::NameTrianglesParams params{};
     params.numbers = numbers_.address();
     params.triangles = geometry_.triangles().address();
@@ -208,7 +208,7 @@ void DrawnVisibility::name_triangles(gpu::Recorder& recorder, const VisibilityBa
     recorder.dispatch(name_triangles_, {}, params, linear_groups(params.pixel_count));
 }
 
-void DrawnVisibility::find_layers(gpu::Recorder& recorder, const VisibilityBatch& batch) const {
+void DrawnVisibility::find_layers(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) const {
     shared::FindLayersParams params{};
     params.cameras = batch.camera_records;
     params.visibility = batch.visibility->address();

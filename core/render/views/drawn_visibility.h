@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/gpu/command_recorder.h"
 #include "core/gpu/raster_pipeline.h"
-#include "core/render/views/view_visibility.h"
+#include "core/render/views/visibility_batch.h"
+#include "core/scene/gpu_scene.h"
 
+#include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace fieldcast::render {
 
@@ -19,15 +24,16 @@ public:
     bool is_fast(const VisibilityBatch& batch) const;
 
     /// Into the batch's visibility, and its layers if the scene has BLEND surfaces. Visible after a barrier.
-    void record(gpu::Recorder& recorder, const VisibilityBatch& batch);
+    void record(gpu::CommandRecorder& recorder, const VisibilityBatch& batch);
 
 private:
     std::unique_ptr<gpu::RasterPipeline> make_pipeline(scene::AlphaMode mode) const;
     glm::mat4 clip_from_group(const glm::mat4& clip_from_world, const scene::DrawGroup& group) const;
     void resize(const VisibilityBatch& batch);
-    void draw_view(gpu::Recorder& recorder, const VisibilityBatch& batch, std::size_t view, std::uint32_t layer) const;
-    void name_triangles(gpu::Recorder& recorder, const VisibilityBatch& batch) const;
-    void find_layers(gpu::Recorder& recorder, const VisibilityBatch& batch) const;
+    void draw_view(gpu::CommandRecorder& recorder, const VisibilityBatch& batch, std::size_t view,
+                   std::uint32_t layer) const;
+    void name_triangles(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) const;
+    void find_layers(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) const;
 
     const gpu::Device& device_;
     const scene::GpuScene& scene_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a GridRenderer keeps after a frame: memory, and what can be asked about the last one.
+// Memory that a GridRenderer keeps after a frame, and queries about the last frame.
+#include "core/render/views/grid_renderer.h"
 #include "core/render/views/grid_renderer_state.h"
-#include "core/render/warp/visibility_depth.h"
+#include "core/render/visibility_depth.h"
 
 #include <algorithm>
 #include <glm/gtc/packing.hpp>
@@ -10,14 +11,14 @@ namespace fieldcast::render {
 
 namespace {
 
-/// Visibility, light, layers and their list, picture, reflections; the map of holes, its pixels twice with room to grow,
-/// and, where a tenth of them is filled, what that takes.
+/// Visibility, light, layers and their list, image, reflections; the map of holes, two lists of its pixels with room to
+/// grow, and the arrays of holes if a tenth of all pixels are holes.
 constexpr std::uint64_t kBytesToRender = 8 + 8 + 16 + 4 + 3 + 4 + 1 + 2 * 5 + 10;
 
 } // namespace
 
 /// (instance, primitive) of each pixel.
-std::vector<glm::uvec2> GridRenderer::State::download_visibility(std::size_t view) const {
+std::vector<glm::uvec2> GridRendererState::download_visibility(std::size_t view) const {
     FC_ASSERT(view < wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(request.width_px) * request.height_px;
     return gpu::read_buffer_as<glm::uvec2>(device, visibility, count, 8ULL * view_stride(request) * view);
@@ -32,16 +33,18 @@ std::uint64_t GridRenderer::missing_bytes(const RenderSettings& settings, const 
     const std::uint64_t pixels = std::uint64_t{view_stride(request)} * request.positions.size();
     const std::uint64_t rendered = pixels - std::min(pixels, state_->view_pixels);
     const std::uint64_t filter_bytes = bytes_per_pixel(settings) - kBytesToRender;
-    return rendered * kBytesToRender + (filter_bytes > 0 ? state_->histories.missing_pixels(request) * filter_bytes : 0);
+    const std::uint64_t filtered = filter_bytes > 0 ? state_->histories.missing_pixels(request) : 0;
+    return rendered * kBytesToRender + filtered * filter_bytes;
 }
 
 void GridRenderer::forget_all_but(std::span<const ViewRequest> requests) {
-    State& s = *state_;
+    GridRendererState& s = *state_;
     s.histories.forget_all_but(requests);
     s.filter = nullptr;
     s.filler.forget();
     s.reflections.forget();
-    s.view_pixels = 0; // the next frame makes room for what it has
+    s.readback.forget();
+    s.view_pixels = 0; // the next frame allocates what it needs
     s.visibility = {};
     s.layers = {};
     s.radiance = {};
@@ -50,7 +53,7 @@ void GridRenderer::forget_all_but(std::span<const ViewRequest> requests) {
 }
 
 LinearView GridRenderer::linear_view(std::size_t index) const {
-    const State& s = *state_;
+    const GridRendererState& s = *state_;
     FC_ASSERT(index < s.wanted, "no such view");
     const std::size_t count = static_cast<std::size_t>(s.request.width_px) * s.request.height_px;
     const auto texels = gpu::read_buffer_as<glm::uvec2>(s.device, s.radiance, count,
@@ -77,7 +80,7 @@ std::vector<std::uint32_t> GridRenderer::view_instances(std::size_t index) const
 }
 
 std::vector<bool> GridRenderer::hole_mask(std::size_t index) const {
-    const State& s = *state_;
+    const GridRendererState& s = *state_;
     FC_ASSERT(index < s.wanted, "no such view");
     return s.filler.mask(static_cast<std::uint32_t>(index));
 }

@@ -21,7 +21,7 @@ Camera request_camera(const Camera& source, const ViewRequest& request, LatticeP
 
 } // namespace
 
-GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
+GridRendererState::GridRendererState(const gpu::Device& d, const scene::GpuScene& s)
     : device(d), scene(s), recorder(d),
       source_layout(d, {{shared::kReprojectGeometry, gpu::BindingType::kTexelBuffer, 1},
                         {shared::kReprojectIllumination, gpu::BindingType::kTexelBuffer, 1}}),
@@ -33,9 +33,9 @@ GridRenderer::State::State(const gpu::Device& d, const scene::GpuScene& s)
       layers_kernel(
           make_scene_kernel(d, s, KernelId::kCompositeLayers, sizeof(shared::TraceListParams), {&source_layout})),
       tone_map_kernel(make_plain_kernel(d, KernelId::kToneMap, sizeof(shared::ToneMapParams))),
-      filler(d, s, source_layout), reflections(d, s, source_layout), histories(d, s) {}
+      filler(d, s, source_layout), reflections(d, s, source_layout), readback(d), histories(d, s) {}
 
-HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, const ViewRequest& asked) {
+HoleFiller::Batch GridRendererState::make_batch(const FrameHeader& header, const ViewRequest& asked) {
     wanted = asked.positions.size();
     ViewRequest next = asked;
     HoleFiller::Batch batch{.width = asked.width_px, .height = asked.height_px};
@@ -54,7 +54,7 @@ HoleFiller::Batch GridRenderer::State::make_batch(const FrameHeader& header, con
     return batch;
 }
 
-void GridRenderer::State::resize(const SourcePlanes& source) {
+void GridRendererState::resize(const SourcePlanes& source) {
     if (source.texel_count() != source_texels) {
         source_texels = source.texel_count();
         geometry = gpu::Buffer(device, static_cast<std::uint64_t>(source_texels) * 16);
@@ -65,9 +65,9 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
         source_set.set(shared::kReprojectGeometry, geometry_view);
         source_set.set(shared::kReprojectIllumination, illumination_view);
     }
-    cameras = gpu::Buffer(device, (shared::kMaxSources + view_count()) * sizeof(shared::CameraRecord));
-    views = gpu::Buffer(device, view_count() * sizeof(shared::ViewRecord));
-    counters = gpu::Buffer(device, (shared::kCounterDiscards + 4ULL * view_count()) * 4);
+    gpu::make_room(device, cameras, (shared::kMaxSources + view_count()) * sizeof(shared::CameraRecord));
+    gpu::make_room(device, views, view_count() * sizeof(shared::ViewRecord));
+    gpu::make_room(device, counters, counter_count() * sizeof(std::uint32_t));
     const std::uint64_t pixels = std::uint64_t{view_stride(request)} * view_count();
     if (pixels <= view_pixels) {
         return;
@@ -81,40 +81,44 @@ void GridRenderer::State::resize(const SourcePlanes& source) {
     reflections.resize(pixels);
 }
 
-void GridRenderer::State::upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
-    const FrameHeader& header = source.header();
+void GridRendererState::place_views(const Camera& source) {
+    view_cameras.clear();
+    for (const LatticePosition position : request.positions) {
+        view_cameras.push_back(request_camera(source, request, position));
+    }
+}
+
+void GridRendererState::record_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners) {
     std::vector<shared::CameraRecord> camera_records(shared::kMaxSources);
     for (std::uint32_t i = 0; i < source.source_count(); ++i) {
         camera_records[i] = make_camera_record(source.camera(i));
     }
     std::vector<shared::ViewRecord> view_records;
-    view_cameras.clear();
-    for (const LatticePosition position : request.positions) {
-        view_cameras.push_back(request_camera(header.source, request, position));
-        camera_records.push_back(make_camera_record(view_cameras.back()));
-        view_records.push_back({view_seed(header, position), 0U});
+    for (std::size_t i = 0; i < request.positions.size(); ++i) {
+        camera_records.push_back(make_camera_record(view_cameras[i]));
+        view_records.push_back({view_seed(source.header(), request.positions[i]), 0U});
     }
     for (const std::uint32_t corner : corners) {
         view_records[corner].is_corner = 1;
     }
-    gpu::write_buffer(device, cameras, std::as_bytes(std::span(camera_records)));
-    gpu::write_buffer(device, views, std::as_bytes(std::span(view_records)));
+    recorder.update(cameras, std::as_bytes(std::span(camera_records)));
+    recorder.update(views, std::as_bytes(std::span(view_records)));
 }
 
-void GridRenderer::State::begin_filter(const FrameHeader& header) {
+void GridRendererState::begin_filter(const FrameHeader& header) {
     filter = ViewFilter::is_wanted(header) ? &histories.filter(request) : nullptr;
     if (filter != nullptr) {
         filter->begin(header, request, make_camera_records(view_cameras));
     }
 }
 
-void GridRenderer::State::record_visibility() {
+void GridRendererState::record_visibility() {
     recorder.stage("views_visibility");
     const std::uint64_t records = cameras.address() + shared::kMaxSources * sizeof(shared::CameraRecord);
     view_visibility.record(recorder, {view_cameras, records, &visibility, &layers});
 }
 
-void GridRenderer::State::record_interleave(const SourcePlanes& source) {
+void GridRendererState::record_interleave(const SourcePlanes& source) {
     shared::InterleaveParams params{};
     params.diffuse = source.plane(PlaneSemantic::kDiffuse).address();
     params.specular = source.plane(PlaneSemantic::kSpecular).address();
@@ -130,7 +134,7 @@ void GridRenderer::State::record_interleave(const SourcePlanes& source) {
     recorder.barrier();
 }
 
-void GridRenderer::State::record_reproject(const FrameHeader& header) {
+void GridRendererState::record_reproject(const FrameHeader& header) {
     shared::ReprojectParams params{};
     params.cameras = cameras.address();
     params.visibility = visibility.address();
@@ -155,16 +159,16 @@ void GridRenderer::State::record_reproject(const FrameHeader& header) {
     recorder.barrier();
 }
 
-// The header gets the times of the stages so far.
-void GridRenderer::State::record_holes(FrameHeader& header) {
+// Appends the times of the stages so far to the header.
+void GridRendererState::record_holes(FrameHeader& header) {
     const shared::ViewLight light = filter != nullptr ? filter->light() : shared::ViewLight{};
     filler.fill(recorder, header,
                 {visibility, views, counters, radiance, source_set, filter != nullptr ? &light : nullptr},
                 header.render_times);
 }
 
-// For kernels that go through a compacted list over all views.
-shared::TraceListParams GridRenderer::State::list_params(const FrameHeader& header) const {
+// Parameters of kernels that process a compacted list of pixels of all views.
+shared::TraceListParams GridRendererState::list_params(const FrameHeader& header) const {
     shared::TraceListParams params{};
     params.cameras = cameras.address();
     params.visibility = visibility.address();
@@ -182,7 +186,7 @@ shared::TraceListParams GridRenderer::State::list_params(const FrameHeader& head
     return params;
 }
 
-void GridRenderer::State::record_layers(const FrameHeader& header) {
+void GridRendererState::record_layers(const FrameHeader& header) {
     shared::TraceListParams params = list_params(header);
     params.list = layer_pixels.address();
     recorder.stage("layers");
@@ -195,7 +199,7 @@ void GridRenderer::State::record_layers(const FrameHeader& header) {
     recorder.barrier();
 }
 
-void GridRenderer::State::record_tone_map(const FrameHeader& header) {
+void GridRendererState::record_tone_map(const FrameHeader& header) {
     shared::ToneMapParams params{};
     params.radiance = radiance.address();
     params.rgb8 = rgb8.address();
@@ -207,39 +211,47 @@ void GridRenderer::State::record_tone_map(const FrameHeader& header) {
     recorder.barrier();
 }
 
-DiscardCounts GridRenderer::State::discards(const std::vector<std::uint32_t>& values, std::size_t view) const {
+DiscardCounts GridRendererState::discards(const std::vector<std::uint32_t>& values, std::size_t view) const {
     const std::size_t base = shared::kCounterDiscards + 4 * view;
     return {values[base + shared::kDiscardFrustum], values[base + shared::kDiscardId],
             values[base + shared::kDiscardPlane], values[base + shared::kDiscardNormal]};
 }
 
-Views GridRenderer::State::download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const {
-    Views result{header, {}};
-    result.views.reserve(wanted);
+// Views lie one after the other in `rgb8`, view_stride() pixels apart.
+void GridRendererState::record_download(Downloaded& result) {
+    result.counters.resize(counter_count());
+    std::vector<gpu::ReadbackPart> parts{
+        {.buffer = &counters, .bytes = std::as_writable_bytes(std::span(result.counters))}};
+    result.views.views.reserve(wanted);
     for (std::size_t i = 0; i < wanted; ++i) {
         Plane image{PlaneSemantic::kColour, PlaneFormat::kRgb8, request.width_px, request.height_px, {}};
         image.bytes.resize(plane_bytes(image.format, image.width_px, image.height_px));
-        gpu::read_buffer(device, rgb8, image.bytes, 3ULL * view_stride(request) * i);
-        result.views.push_back({request.positions[i], std::move(image), discards(counts, i)});
+        result.views.views.push_back({request.positions[i], std::move(image), {}});
+        parts.push_back({&rgb8, 3ULL * view_stride(request) * i, result.views.views.back().image.bytes});
     }
-    return result;
+    if (!rgb8.is_cached()) { // otherwise the host reads it without a copy on the device
+        recorder.stage("download");
+    }
+    readback.record(recorder, std::move(parts));
 }
 
 GridRenderer::GridRenderer(const gpu::Device& device, const scene::GpuScene& scene)
-    : state_(std::make_unique<State>(device, scene)) {}
+    : state_(std::make_unique<GridRendererState>(device, scene)) {}
 
 GridRenderer::~GridRenderer() = default;
 
 Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& request) {
     FC_ASSERT(!request.positions.empty() && request.width_px > 0 && request.height_px > 0, "nothing to render");
-    State& s = *state_;
+    GridRendererState& s = *state_;
     FrameHeader header = source.header();
     const HoleFiller::Batch batch = s.make_batch(header, request);
     s.resize(source);
-    s.upload_cameras(source, batch.corners);
+    s.place_views(header.source);
     s.begin_filter(header);
 
+    s.record_cameras(source, batch.corners);
     s.recorder.fill(s.counters, 0);
+    s.recorder.barrier();
     s.filler.begin(s.recorder, batch, s.cameras);
     s.recorder.barrier();
     s.record_visibility();
@@ -256,16 +268,22 @@ Views GridRenderer::render(const SourcePlanes& source, const ViewRequest& reques
         s.record_layers(header);
     }
     s.record_tone_map(header);
+    GridRendererState::Downloaded result;
+    s.record_download(result);
     s.recorder.submit();
+    s.readback.finish();
     if (s.filter != nullptr) {
         s.filter->end();
     }
 
     append_times(s.recorder, header.render_times);
-    const auto counts = gpu::read_buffer_as<std::uint32_t>(s.device, s.counters, s.counters.size_bytes() / 4);
-    s.invalid_samples += counts[shared::kCounterInvalidSamples];
-    s.hole_counts = HoleFiller::counts(counts);
-    return s.download(header, counts);
+    s.invalid_samples += result.counters[shared::kCounterInvalidSamples];
+    s.hole_counts = HoleFiller::counts(result.counters);
+    for (std::size_t i = 0; i < s.wanted; ++i) {
+        result.views.views[i].discards = s.discards(result.counters, i);
+    }
+    result.views.header = std::move(header);
+    return std::move(result.views);
 }
 
 } // namespace fieldcast::render

@@ -12,6 +12,8 @@
 
 namespace fieldcast::render {
 
+struct GridRendererState;
+
 /// Linear radiance of one view, for measuring: row-major RGB, unexposed.
 struct LinearView {
     std::uint32_t width_px = 0;
@@ -19,28 +21,29 @@ struct LinearView {
     std::vector<glm::vec3> pixels;
 };
 
-/// Makes finished views from a source frame and the scene: visibility of all views, backward reprojection of the
-/// illumination with footprint-scaled tests, path tracing of what was discarded and could not be had otherwise
-/// (HoleFiller), averages and denoiser of the views where the settings ask for them (ViewFilter), remodulation with the
-/// target's own material, tone mapping. The same class on server and clients.
+/// Makes finished views from a source frame and the scene, on server and clients alike. The passes are: visibility of
+/// all views, backward reprojection of the illumination with footprint-scaled tests, filling of the discarded pixels
+/// (HoleFiller, which traces paths where nothing else helps), averages and denoiser of the views where the settings ask
+/// for them (ViewFilter), remodulation with the material of the view's own surface, and tone mapping. Not thread-safe.
 class GridRenderer {
 public:
     GridRenderer(const gpu::Device& device, const scene::GpuScene& scene);
     ~GridRenderer();
 
-    /// Views in the order of `request.positions`; the result's header is the source's with the stage times of this call
-    /// appended. The scene must be posed for the source's scene time. Throws UserError if the views are to be filtered
-    /// and are more than the device has room for.
+    /// Renders views in the order of `request.positions`. The header of the result is the source's, with the stage
+    /// times of this call appended. The scene must be posed for the source's scene time. Blocks. Throws UserError if
+    /// the views are filtered and the device has no room for so many, VulkanError if a call fails.
     Views render(const SourcePlanes& source, const ViewRequest& request);
 
-    /// Bytes of the device's memory per pixel of views: what they take while they are made, and what is kept of them.
+    /// Bytes of device memory per pixel of views, while they are rendered and for what is kept of them. Staging memory
+    /// of the host is not counted.
     static std::uint64_t bytes_per_pixel(const RenderSettings& settings);
 
-    /// What render() would have to allocate for `request`; 0: nothing.
+    /// Bytes of device memory that render() would allocate for `request`.
     std::uint64_t missing_bytes(const RenderSettings& settings, const ViewRequest& request) const;
 
-    /// Gives back what is kept of views of other geometries, fields of view and sizes than those of `requests`, and room
-    /// for more pixels than they have. Nothing of the last render() can be asked any more.
+    /// Frees the history of all views whose geometry, field of view or size is not in `requests`, and the buffers of
+    /// the last render(), whose results cannot be read afterwards.
     void forget_all_but(std::span<const ViewRequest> requests);
 
     /// Linear image of view `index` of the last render().
@@ -49,20 +52,19 @@ public:
     /// View depth (metres, infinity: nothing) of view `index` of the last render(), for tests and benchmarks.
     std::vector<float> view_depth(std::size_t index) const;
 
-    /// Instance that each pixel of view `index` of the last render() shows, scene::kNone: nothing; for benchmarks.
+    /// Instance in each pixel of view `index` of the last render(), scene::kNone: nothing; for benchmarks.
     std::vector<std::uint32_t> view_instances(std::size_t index) const;
 
-    /// Which pixels of view `index` of the last render() the source did not show, row-major.
+    /// Pixels of view `index` of the last render() that the source does not show, row-major.
     std::vector<bool> hole_mask(std::size_t index) const;
 
-    /// Of the last render(), over all views, those of the cascade's corners included.
+    /// Counts over all views of the last render(), the cascade's corner views included.
     HoleCounts hole_counts() const;
 
     std::uint64_t invalid_sample_count() const; ///< must stay 0
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::unique_ptr<GridRendererState> state_;
 };
 
 } // namespace fieldcast::render

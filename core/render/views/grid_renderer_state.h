@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
+#include "core/gpu/readback.h"
+#include "core/lightfield/views.h"
 #include "core/render/frame_parameters.h"
-#include "core/render/views/grid_renderer.h"
+#include "core/render/source/source_planes.h"
+#include "core/render/view_request.h"
 #include "core/render/views/hole_filler.h"
 #include "core/render/views/reflections.h"
 #include "core/render/views/view_history.h"
@@ -11,16 +14,19 @@
 
 namespace fieldcast::render {
 
-/// What a GridRenderer has, for its own files.
-struct GridRenderer::State {
-    State(const gpu::Device& d, const scene::GpuScene& s);
+/// Kernels, buffers and history of a GridRenderer; for its own files.
+struct GridRendererState {
+    GridRendererState(const gpu::Device& d, const scene::GpuScene& s);
 
     void resize(const SourcePlanes& source);
-    void upload_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners);
+    /// Sets `view_cameras`.
+    void place_views(const Camera& source);
+    /// Records the writes of `cameras` and `views`; a barrier must follow.
+    void record_cameras(const SourcePlanes& source, const std::vector<std::uint32_t>& corners);
     void record_visibility();
     void record_interleave(const SourcePlanes& source);
     void record_reproject(const FrameHeader& header);
-    /// Filters over views know nothing of rays that were looked up for one view.
+    /// Filtered views get no reflections: filters over views cannot use rays that were traced for one view.
     bool wants_reflections(const FrameHeader& header) const {
         return filter == nullptr && reflections.are_wanted(header);
     }
@@ -30,14 +36,21 @@ struct GridRenderer::State {
     HoleFiller::Batch make_batch(const FrameHeader& header, const ViewRequest& asked);
     void begin_filter(const FrameHeader& header);
     void record_tone_map(const FrameHeader& header);
-    Views download(const FrameHeader& header, const std::vector<std::uint32_t>& counts) const;
+    /// Pixels and counters of a batch on the host.
+    struct Downloaded {
+        Views views; ///< `wanted` of them, still without header and discards
+        std::vector<std::uint32_t> counters;
+    };
+    /// Records the copies to the host; `result` is filled by readback.finish() and must not be changed before.
+    void record_download(Downloaded& result);
     DiscardCounts discards(const std::vector<std::uint32_t>& values, std::size_t view) const;
     std::vector<glm::uvec2> download_visibility(std::size_t view) const;
+    std::size_t counter_count() const { return shared::kCounterDiscards + 4ULL * view_count(); }
     std::uint32_t view_count() const { return static_cast<std::uint32_t>(request.positions.size()); }
 
     const gpu::Device& device;
     const scene::GpuScene& scene;
-    gpu::Recorder recorder;
+    gpu::CommandRecorder recorder;
     gpu::BindingLayout source_layout;
     ViewVisibility view_visibility;
     gpu::Kernel interleave_kernel;
@@ -49,10 +62,12 @@ struct GridRenderer::State {
     HoleFiller filler;
     Reflections reflections;
 
-    ViewRequest request;    ///< with the corner views of the hole cascade
-    std::size_t wanted = 0; ///< views that were asked for; they come first
+    gpu::Readback readback;
+
+    ViewRequest request;    ///< the request and the corner views of the hole cascade
+    std::size_t wanted = 0; ///< number of requested views; they come first
     ViewHistories histories;
-    ViewFilter* filter = nullptr; ///< of this frame's views; null: they are not filtered
+    ViewFilter* filter = nullptr; ///< of the views of this frame; null: they are not filtered
     HoleCounts hole_counts;
     std::vector<Camera> view_cameras;
     std::uint32_t source_texels = 0; ///< of all pages
@@ -65,7 +80,7 @@ struct GridRenderer::State {
     gpu::TexelView illumination_view;
     gpu::BindingSet source_set;
 
-    gpu::Buffer cameras; ///< kMaxSources of sources, then of the views
+    gpu::Buffer cameras; ///< of the sources (kMaxSources records), then of the views
     gpu::Buffer views;   ///< ViewRecord
     gpu::Buffer counters;
     gpu::Buffer visibility;

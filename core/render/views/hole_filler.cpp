@@ -9,7 +9,7 @@ namespace fieldcast::render {
 
 namespace {
 
-/// Makes `buffer` hold at least `bytes`, with room to grow. Contents are lost where it grows.
+/// Makes `buffer` hold at least `bytes`, plus a quarter if it must be replaced. Replacing it loses its contents.
 void grow(const gpu::Device& device, gpu::Buffer& buffer, std::uint64_t bytes) {
     if (!buffer || buffer.size_bytes() < bytes) {
         buffer = gpu::Buffer(device, bytes + bytes / 4);
@@ -43,7 +43,7 @@ void HoleFiller::forget() {
     filtered_ = {};
 }
 
-void HoleFiller::begin(gpu::Recorder& recorder, const Batch& batch, const gpu::Buffer& cameras) {
+void HoleFiller::begin(gpu::CommandRecorder& recorder, const Batch& batch, const gpu::Buffer& cameras) {
     batch_ = batch;
     const std::uint32_t tiles = gpu::groups_for(batch.width, shared::kHoleTileWidth) *
                                 gpu::groups_for(batch.height, shared::kHoleTileHeight);
@@ -58,7 +58,7 @@ void HoleFiller::begin(gpu::Recorder& recorder, const Batch& batch, const gpu::B
     recorder.fill(frame.words, 0);
 }
 
-void HoleFiller::number_holes(gpu::Recorder& recorder, const gpu::Buffer& counters) {
+void HoleFiller::number_holes(gpu::CommandRecorder& recorder, const gpu::Buffer& counters) {
     const HoleHistory::Frame& frame = batch_.history->now();
     const std::uint32_t block_count = gpu::groups_for(word_count_, shared::kHoleBlock);
     const shared::HoleMapParams params{frame.words.address(), frame.first.address(), blocks_.address(),
@@ -116,7 +116,7 @@ shared::HoleParams HoleFiller::make_params(const FrameHeader& header, const Targ
     return params;
 }
 
-void HoleFiller::trace_list(gpu::Recorder& recorder, const Targets& targets, shared::HoleParams params,
+void HoleFiller::trace_list(gpu::CommandRecorder& recorder, const Targets& targets, shared::HoleParams params,
                             std::uint32_t list) {
     params.list = list;
     recorder.stage("holes");
@@ -128,7 +128,8 @@ void HoleFiller::trace_list(gpu::Recorder& recorder, const Targets& targets, sha
     recorder.barrier();
 }
 
-void HoleFiller::keep(gpu::Recorder& recorder, const shared::ViewLight& light, const shared::HoleParams& params) const {
+void HoleFiller::keep(gpu::CommandRecorder& recorder, const shared::ViewLight& light,
+                      const shared::HoleParams& params) const {
     shared::KeepHolesParams kept{};
     kept.frame = batch_.history->now().record();
     kept.light_in = params.light_in;
@@ -142,7 +143,7 @@ void HoleFiller::keep(gpu::Recorder& recorder, const shared::ViewLight& light, c
     recorder.barrier();
 }
 
-void HoleFiller::smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
+void HoleFiller::smooth_and_shade(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets,
                                   shared::HoleParams params) {
     const std::initializer_list<const gpu::BindingSet*> sets{&scene_.bindings(), &targets.source_set};
     if (hole_filling(header).denoise) {
@@ -160,7 +161,7 @@ void HoleFiller::smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& he
     recorder.barrier();
 }
 
-void HoleFiller::fill(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
+void HoleFiller::fill(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets,
                       std::vector<StageTime>& times) {
     number_holes(recorder, targets.counters);
     recorder.submit();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "core/render/source/source_planes.h"
 #include "core/scene/gpu_scene.h"
 #include "shaders/shared/holes.h"
@@ -10,20 +10,20 @@
 
 namespace fieldcast::render {
 
-/// Where the holes of one frame's views got their light from. All counts are pixels over all views.
+/// Counts of one frame's holes by the origin of their light, in pixels over all views.
 struct HoleCounts {
     std::uint64_t holes = 0;
-    std::uint64_t remembered = 0; ///< from the frame before
-    std::uint64_t isolated = 0;   ///< from around their place in the source
-    std::uint64_t cascaded = 0;   ///< from corner views
+    std::uint64_t remembered = 0; ///< light of the previous frame
+    std::uint64_t isolated = 0;   ///< light of the neighbourhood in the source
+    std::uint64_t cascaded = 0;   ///< light of corner views
     std::uint64_t traced = 0;
 };
 
-/// Holes of this frame and the one before of one set of views.
+/// Holes of one set of views, in this frame and the previous one.
 struct HoleHistory {
     struct Frame {
         gpu::Buffer cameras;
-        gpu::Buffer words; ///< the map
+        gpu::Buffer words; ///< the map: one bit per pixel
         gpu::Buffer first;
         gpu::Buffer pixels;
         gpu::Buffer surfaces;
@@ -37,60 +37,61 @@ struct HoleHistory {
     const Frame& before() const { return frames[1 - current]; }
 };
 
-/// Fills the pixels that no source pixel could be reused for (settings.holes says how). Reprojection marks them in a
-/// map of one bit per pixel; the rest works on arrays that hold only holes, in the order of the map.
+/// Fills the pixels for which no source pixel could be reused; settings.holes chooses the stages. Reprojection marks
+/// these holes in a map of one bit per pixel. Later passes work on arrays of holes only, in the order of the map.
 class HoleFiller {
 public:
-    /// Binding set 1 of all its kernels has `source_layout`.
+    /// `source_layout`: layout of binding set 1 of all kernels.
     HoleFiller(const gpu::Device& device, const scene::GpuScene& scene, const gpu::BindingLayout& source_layout);
 
-    /// Gives back the memory of what was filled last; its history may go.
+    /// Frees the memory of the last batch, whose history may be destroyed afterwards.
     void forget();
 
     /// Views of one frame.
     struct Batch {
         HoleHistory* history = nullptr; ///< must outlive the frame
-        bool has_history = false;       ///< its frame before is of the same views and of the pose before
+        bool has_history = false;       ///< the history holds the previous pose of the same views
         std::uint32_t width = 0;
         std::uint32_t height = 0;
         std::uint32_t view_count = 0;
         std::vector<std::uint32_t>
-            corners{}; ///< indices of the cascade's corner views, at most four; empty: no cascade
+            corners{}; ///< indices of the corner views, at most four; empty: no cascade
     };
 
-    /// Makes room and records clearing of the map, in which reprojection then marks holes. `cameras`: CameraRecords of
-    /// source and views, copied into the history.
-    void begin(gpu::Recorder& recorder, const Batch& batch, const gpu::Buffer& cameras);
+    /// Allocates buffers and records the clearing of the map, in which reprojection then marks holes. `cameras` holds
+    /// the CameraRecords of source and views, which are copied into the history.
+    void begin(gpu::CommandRecorder& recorder, const Batch& batch, const gpu::Buffer& cameras);
     const gpu::Buffer& map() const { return batch_.history->now().words; }
 
-    /// What filling reads and writes besides the map.
+    /// Buffers that fill() reads and writes besides the map.
     struct Targets {
         const gpu::Buffer& visibility;
         const gpu::Buffer& views;
         const gpu::Buffer& counters;
         const gpu::Buffer& radiance;
         const gpu::BindingSet& source_set;
-        const shared::ViewLight* light = nullptr; ///< if views are filtered: gets what radiance would
+        const shared::ViewLight* light = nullptr; ///< output instead of `radiance` if views are filtered
     };
 
-    /// Numbers the holes and submits the recorder, since their count decides how large arrays must be; `times` gets the
-    /// stages so far. Then records the filling of `targets.radiance` or `targets.light`.
-    void fill(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
+    /// Numbers the holes and submits the recorder, because the array sizes depend on their count. Appends the stage
+    /// times so far to `times`. Then records the filling of `targets.radiance` or `targets.light`.
+    void fill(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets,
               std::vector<StageTime>& times);
 
-    /// What the counters of the batch say once all is done.
+    /// Decodes the batch's counters, which are final after the last submission.
     static HoleCounts counts(const std::vector<std::uint32_t>& counters);
 
-    /// Holes of one view of the batch, row-major; until the next begin().
+    /// Holes of one view of the batch, row-major; valid until the next begin().
     std::vector<bool> mask(std::uint32_t view) const;
 
 private:
-    void number_holes(gpu::Recorder& recorder, const gpu::Buffer& counters);
+    void number_holes(gpu::CommandRecorder& recorder, const gpu::Buffer& counters);
     void reserve(std::uint32_t hole_count);
     shared::HoleParams make_params(const FrameHeader& header, const Targets& targets) const;
-    void trace_list(gpu::Recorder& recorder, const Targets& targets, shared::HoleParams params, std::uint32_t list);
-    void keep(gpu::Recorder& recorder, const shared::ViewLight& light, const shared::HoleParams& params) const;
-    void smooth_and_shade(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets,
+    void trace_list(gpu::CommandRecorder& recorder, const Targets& targets, shared::HoleParams params,
+                    std::uint32_t list);
+    void keep(gpu::CommandRecorder& recorder, const shared::ViewLight& light, const shared::HoleParams& params) const;
+    void smooth_and_shade(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets,
                           shared::HoleParams params);
 
     const gpu::Device& device_;
@@ -106,7 +107,7 @@ private:
     gpu::Kernel shade_;
     gpu::Kernel keep_;
     Batch batch_;
-    std::uint32_t word_count_ = 0; ///< of the map, over all views
+    std::uint32_t word_count_ = 0; ///< words of the map, over all views
     std::uint32_t hole_count_ = 0;
     gpu::Buffer frame_records_;
     gpu::Buffer blocks_;

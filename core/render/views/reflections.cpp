@@ -25,7 +25,7 @@ void Reflections::resize(std::uint64_t view_pixels) {
     }
 }
 
-void Reflections::record(gpu::Recorder& recorder, shared::TraceListParams params, const gpu::Buffer& counters,
+void Reflections::record(gpu::CommandRecorder& recorder, shared::TraceListParams params, const gpu::Buffer& counters,
                          const gpu::BindingSet& source) {
     params.list = pixels_.address();
     recorder.stage("reflections");

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "core/lightfield/source_frame.h"
 #include "core/scene/gpu_scene.h"
 #include "shaders/shared/frame.h"
 
 namespace fieldcast::render {
 
-/// What smooth surfaces mirror, looked up anew in every view: their light depends on the viewer, and reprojected with
-/// the surface it would look painted on. Reprojection lists their pixels; one ray from each finds what is mirrored
-/// there.
+/// Reflections in smooth surfaces, traced for every view: they depend on the viewing direction and, if reprojected with
+/// the surface, would look painted on. Reprojection lists the pixels of such surfaces, and one ray per pixel finds the
+/// reflected surface.
 class Reflections {
 public:
-    /// Binding set 1 of the kernel has `source_layout`.
+    /// `source_layout`: layout of binding set 1 of the kernel.
     Reflections(const gpu::Device& device, const scene::GpuScene& scene, const gpu::BindingLayout& source_layout);
 
-    /// Whether the frame's views have such surfaces, so that reprojection shall list them.
+    /// Whether the frame's views need reflections. Reprojection must then list the pixels.
     bool are_wanted(const FrameHeader& header) const;
 
-    /// Makes room for the list.
+    /// Makes room for a list of `view_pixels` pixels.
     void resize(std::uint64_t view_pixels);
-    void forget() { pixels_ = {}; } ///< gives the room back
-    const gpu::Buffer& pixels() const { return pixels_; } ///< the list; its length is kCounterReflections
+    void forget() { pixels_ = {}; } ///< frees the list
+    const gpu::Buffer& pixels() const { return pixels_; } ///< the list; counter kCounterReflections holds its length
 
-    /// `params`: everything but the list. After reprojection, before layers are composited.
-    void record(gpu::Recorder& recorder, shared::TraceListParams params, const gpu::Buffer& counters,
+    /// Records the pass; call after reprojection and before layers are composited. `params.list` is set here.
+    void record(gpu::CommandRecorder& recorder, shared::TraceListParams params, const gpu::Buffer& counters,
                 const gpu::BindingSet& source);
 
 private:

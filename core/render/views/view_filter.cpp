@@ -12,9 +12,9 @@ namespace fieldcast::render {
 
 namespace {
 
-// Accumulation: this frame and the one before (geometry, two colours, moments, length) and two noisy colours. Either
-// denoiser: two more pairs of colours. BMFR: taps, and one fit per block, of which there is one more in each direction
-// than fit into the view; counted as two per 32×32 pixels.
+// Bytes per pixel. Accumulation keeps geometry, two colours, moments and length of this and the previous frame, and two
+// noisy colours. Each denoiser adds two pairs of colours. BMFR adds taps and one fit per block; a view has one block
+// more in each direction than fits into it, which is counted as two blocks per 32×32 pixels.
 constexpr std::uint64_t kBytesToAccumulate = 2 * (16 + 2 * 16 + 16 + 4) + 2 * 16;
 constexpr std::uint64_t kBytesToDenoise = 2 * 2 * 16;
 constexpr std::uint64_t kBytesToFit = sizeof(shared::HistoryTaps) + (2 * sizeof(shared::BlockFit) + 1023) / 1024;
@@ -77,7 +77,7 @@ shared::ViewLight ViewFilter::light() const {
     return {filter_.geometry().address(), filter_.noisy_diffuse().address(), filter_.noisy_specular().address()};
 }
 
-// Averages only where the light was denoised in the source.
+// If the light was denoised in the source, views are averaged only.
 FilterFrame ViewFilter::make_frame(const FrameHeader& header, const Targets& targets) const {
     FilterFrame frame{.cameras = cameras_.address(),
                       .visibility = targets.visibility.address(),
@@ -100,7 +100,7 @@ FilterFrame ViewFilter::make_frame(const FrameHeader& header, const Targets& tar
     return frame;
 }
 
-void ViewFilter::record(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets) {
+void ViewFilter::record(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets) {
     filter_.record(recorder, make_frame(header, targets));
     shared::ShadeViewsParams params{};
     params.cameras = cameras_.address();

@@ -9,40 +9,41 @@
 
 namespace fieldcast::render {
 
-/// Averages over time and, with DenoisedImages::kViews, denoises the light of views before their own materials come in
-/// (docs/lightfield.md). Every view is a page, as every source is one of the source's filter. Keeps the history of one
-/// set of views; another set starts anew.
+/// Averages the light of views over time and, with DenoisedImages::kViews, denoises it, before their materials are
+/// applied (docs/lightfield.md). Every view is a page, just as every source is a page in the source's filter. Keeps the
+/// history of one set of views; another set starts without history.
 class ViewFilter {
 public:
     ViewFilter(const gpu::Device& device, const scene::GpuScene& scene);
 
-    /// Whether the settings ask for it in this frame.
+    /// Whether the settings of this frame average or denoise views.
     static bool is_wanted(const FrameHeader& header);
 
     static std::uint64_t bytes_per_pixel(const RenderSettings& settings);
-    std::uint32_t texel_count() const { return request_.width_px * request_.height_px * view_count(); } ///< last frame's
+    /// Pixels of the last frame's views.
+    std::uint32_t texel_count() const { return request_.width_px * request_.height_px * view_count(); }
 
-    /// How many pixels, over all views, the device has room for.
+    /// Most pixels, over all views, that fit on the device.
     static std::uint64_t max_pixels(const gpu::Device& device, const RenderSettings& settings);
 
-    /// Throws UserError if `request` is more.
+    /// Throws UserError if `request` has more than max_pixels().
     static void check(const gpu::Device& device, const RenderSettings& settings, const ViewRequest& request);
 
-    /// A frame begins. `cameras`: of the views, which passed check().
+    /// Begins a frame. `cameras` are those of the views; `request` must have passed check().
     void begin(const FrameHeader& header, const ViewRequest& request, std::span<const shared::CameraRecord> cameras);
 
-    /// Where geometry and noisy light of this frame's views are to be written; reprojection fills all of it.
+    /// Device addresses for geometry and noisy light of this frame's views; reprojection writes every pixel.
     shared::ViewLight light() const;
 
-    /// What is read and written besides the light.
+    /// Buffers that record() reads and writes besides the light.
     struct Targets {
         const gpu::Buffer& visibility;
         const gpu::Buffer& layers;
-        const gpu::Buffer& radiance; ///< of pixels that see a surface
+        const gpu::Buffer& radiance; ///< output, for pixels that show a surface
     };
-    void record(gpu::Recorder& recorder, const FrameHeader& header, const Targets& targets);
+    void record(gpu::CommandRecorder& recorder, const FrameHeader& header, const Targets& targets);
 
-    /// The frame was submitted.
+    /// Ends the frame, after its submission.
     void end() { filter_.swap(); }
 
 private:
@@ -52,13 +53,13 @@ private:
     const gpu::Device& device_;
     const scene::GpuScene& scene_;
     IlluminationFilter filter_;
-    GroupList groups_; ///< all
+    GroupList groups_; ///< every group
     gpu::Kernel shade_;
-    ViewRequest request_; ///< of this frame, later of the one before
+    ViewRequest request_; ///< of this frame; of the previous one until begin()
     std::uint64_t pose_count_ = 0;
     bool has_history_ = false;
-    std::vector<shared::CameraRecord> records_; ///< of the views
-    gpu::Buffer cameras_;                       ///< now, then as they were
+    std::vector<shared::CameraRecord> records_; ///< cameras of the views
+    gpu::Buffer cameras_;                       ///< CameraRecords of this frame, then of the previous one
 };
 
 } // namespace fieldcast::render

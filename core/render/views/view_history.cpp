@@ -7,13 +7,13 @@ namespace fieldcast::render {
 
 namespace {
 
-/// Geometry, field of view and size.
+/// The request without positions: geometry, field of view, size and guard band.
 ViewRequest kind_of(ViewRequest request) {
     request.positions.clear();
     return request;
 }
 
-/// Room for one more in `kept`.
+/// Erases the least recently used element if `kept` is full, so that one more fits.
 template <class T> void forget_oldest(std::vector<std::unique_ptr<T>>& kept) {
     constexpr std::size_t kMaxKept = 4;
     if (kept.size() == kMaxKept) {
@@ -35,7 +35,7 @@ HistoryOfHoles& ViewHistories::holes(const ViewRequest& request) {
     return **found;
 }
 
-// A filter holds much memory: one that no frame used for a while goes.
+// A filter holds much memory, so an unused one is erased after kForgottenAfter uses of other views.
 ViewFilter& ViewHistories::filter(const ViewRequest& request) {
     constexpr std::uint64_t kForgottenAfter = 64; // uses of other views
     std::erase_if(filters_, [&](const auto& kept) { return use_count_ - kept->last_use > kForgottenAfter; });

@@ -9,37 +9,38 @@
 
 namespace fieldcast::render {
 
-/// Holes of one set of views over frames.
+/// Hole history of one set of views.
 struct HistoryOfHoles {
-    ViewRequest request; ///< with the corner views
+    ViewRequest request; ///< includes the corner views
     std::uint64_t pose_count = 0;
     std::uint64_t last_use = 0;
     HoleHistory holes;
 };
 
-/// What is kept of views from frame to frame. A channel has few sets of views; those not used for longest are
-/// forgotten.
+/// Histories and filters of sets of views, kept from frame to frame. A channel uses few sets, so only the most recently
+/// used ones are kept.
 class ViewHistories {
 public:
     ViewHistories(const gpu::Device& device, const scene::GpuScene& scene) : device_(device), scene_(scene) {}
 
-    /// Of exactly these views.
+    /// The hole history of exactly these views; created if missing.
     HistoryOfHoles& holes(const ViewRequest& request);
 
-    /// Of views of this geometry, field of view and size: where their number changes, kernels and room are kept.
+    /// The filter for views of this geometry, field of view and size; created if missing. A change of their number
+    /// keeps its kernels and memory.
     ViewFilter& filter(const ViewRequest& request);
 
-    /// Room that the filter of these views, if the settings ask for one, has not got.
+    /// Pixels that the filter of these views, if the settings require one, still has to allocate.
     std::uint64_t missing_pixels(const ViewRequest& request) const;
 
-    /// Forgets views of other kinds than those of `requests`.
+    /// Forgets all views whose geometry, field of view or size is not among `requests`.
     void forget_all_but(std::span<const ViewRequest> requests);
 
 private:
     struct Filter {
         Filter(const gpu::Device& device, const scene::GpuScene& scene, ViewRequest shown)
             : kind(std::move(shown)), filter(device, scene) {}
-        ViewRequest kind; ///< without positions
+        ViewRequest kind; ///< request without positions
         std::uint64_t last_use = 0;
         ViewFilter filter;
     };

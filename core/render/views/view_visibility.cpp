@@ -16,7 +16,7 @@ ViewVisibility::ViewVisibility(const gpu::Device& device, const scene::GpuScene&
 
 ViewVisibility::~ViewVisibility() = default;
 
-void ViewVisibility::record(gpu::Recorder& recorder, const VisibilityBatch& batch) {
+void ViewVisibility::record(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) {
     if (drawn_ != nullptr && (scene_.visibility() == scene::VisibilityMethod::kRaster || drawn_->is_fast(batch))) {
         drawn_->record(recorder, batch);
     } else {
@@ -24,7 +24,7 @@ void ViewVisibility::record(gpu::Recorder& recorder, const VisibilityBatch& batc
     }
 }
 
-void ViewVisibility::trace(gpu::Recorder& recorder, const VisibilityBatch& batch) const {
+void ViewVisibility::trace(gpu::CommandRecorder& recorder, const VisibilityBatch& batch) const {
     shared::VisibilityParams params{};
     params.cameras = batch.camera_records;
     params.visibility = batch.visibility->address();

@@ -31,7 +31,7 @@ TilePlane::TilePlane(PlaneSemantic semantic, PlaneFormat format)
 }
 
 void TilePlane::append(const Plane& view, std::span<const std::uint32_t> tiles) {
-    FC_ASSERT(view.format == plane_.format, "tiles of another format");
+    FC_ASSERT(view.format == plane_.format, "the view does not have the plane's format");
     const std::uint32_t pixel_bytes = bytes_per_pixel(view.format);
     const std::uint32_t columns = residual_tiles(view.width_px, view.height_px).x;
     plane_.height_px = residual_height(tile_count_ + tiles.size());

@@ -7,18 +7,18 @@
 
 namespace fieldcast::render {
 
-/// Numbers, within one view, of the tiles in which at least `least` pixels of `mask` (row-major) are set.
+/// Indices, within one view, of the tiles in which at least `least` pixels of `mask` (row-major) are set.
 std::vector<std::uint32_t> choose_tiles(const std::vector<bool>& mask, glm::uvec2 size_px, std::uint32_t least);
 
-/// Copies tiles out of views into a plane, one after the other. Tiles that reach beyond a view repeat its border.
+/// Copies tiles of views into a plane, one after the other. Tiles that extend beyond a view repeat its border.
 class TilePlane {
 public:
     TilePlane(PlaneSemantic semantic, PlaneFormat format);
 
-    /// Appends those tiles (numbers within the view) of `view`, which has the plane's format.
+    /// Appends the tiles with the indices `tiles` of `view`, which must have the plane's format.
     void append(const Plane& view, std::span<const std::uint32_t> tiles);
 
-    const Plane& plane() const { return plane_; } ///< one row of tiles at least
+    const Plane& plane() const { return plane_; } ///< has at least one row of tiles
 
 private:
     Plane plane_;

@@ -10,26 +10,26 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kNothingKnown = 0xBF800000; // −1, as the bits of a float
+constexpr std::uint32_t kNothingKnown = 0xBF800000; // the bits of the float −1
 
 Decoded<const Plane*> find_plane(const SourceFrame& frame, PlaneSemantic semantic, const char* name) {
     const Plane* plane = frame.find(semantic);
     if (plane == nullptr) {
-        return decode_error(std::string("frame without plane ") + name);
+        return decode_error(std::string("frame has no plane ") + name);
     }
     const bool fits = plane->format == usual_format(semantic) &&
                       plane->width_px == plane_width(frame.header, semantic) &&
                       plane->height_px == plane_height(frame.header, semantic) &&
                       plane->bytes.size() == plane_bytes(plane->format, plane->width_px, plane->height_px);
     return fits ? Decoded<const Plane*>(plane)
-                : decode_error(std::string("plane ") + name + ": format or size is not that of the header");
+                : decode_error(std::string("plane ") + name + ": format or size does not match the header");
 }
 
-/// Planes of a frame that views can be made from.
+/// The planes of a frame from which views are warped.
 struct Planes {
     const Plane* colour = nullptr;
     const Plane* inverse_depth = nullptr;
-    const Plane* residual_colour = nullptr; ///< null: there is no residual layer
+    const Plane* residual_colour = nullptr; ///< null: the frame has no residual layer
     const Plane* residual_inverse_depth = nullptr;
 };
 
@@ -46,8 +46,8 @@ Decoded<void> find_residual(const SourceFrame& frame, Planes& planes) {
 
 Decoded<Planes> find_planes(const SourceFrame& frame) {
     if (frame.header.source_positions.size() != 1) {
-        return decode_error("frame with " + std::to_string(frame.header.source_positions.size()) +
-                            " sources; views are warped from one");
+        return decode_error("frame has " + std::to_string(frame.header.source_positions.size()) +
+                            " sources; views are warped from exactly one");
     }
     if (!(frame.header.inverse_depth_unit > 0.0F)) {
         return decode_error("header.inverse_depth_unit: must be above 0");
@@ -72,7 +72,7 @@ std::vector<std::uint16_t> steps_of(const Plane& inverse_depth) {
     return steps;
 }
 
-/// Least and most inverse depth, in steps; the first is larger if there is none.
+/// Least and greatest inverse depth, in steps of inverse_depth_unit; the first is larger if the range is empty.
 using StepRange = std::pair<std::uint16_t, std::uint16_t>;
 constexpr StepRange kNoSteps{0xFFFF, 0};
 
@@ -82,7 +82,7 @@ void widen(StepRange& range, std::span<const std::uint16_t> steps) {
     }
 }
 
-/// Of every image: the source, then the views of the residual layer.
+/// The range of every image: the source, then the views of the residual layer.
 std::vector<StepRange> depth_ranges(const SourceFrame& frame, const ResidualLayer& residual) {
     std::vector<StepRange> ranges(1 + residual.positions.size(), kNoSteps);
     widen(ranges[0], steps_of(*frame.find(PlaneSemantic::kInverseDepth)));
@@ -133,7 +133,7 @@ Decoded<void> WarpImages::upload(const SourceFrame& frame) {
     recorder_.barrier();
     record_unpack(*planes->colour, *planes->inverse_depth, 0);
     if (has_residual) {
-        recorder_.submit(); // what was uploaded is read before it is replaced
+        recorder_.submit(); // kernels must read the previous upload before it is replaced
         tiles_ = gpu::make_buffer<std::uint32_t>(device_, header_.residual.tiles);
         record_unpack(*planes->residual_colour, *planes->residual_inverse_depth,
                       static_cast<std::uint32_t>(header_.residual.tiles.size()));
@@ -230,8 +230,8 @@ void WarpImages::record_bounds() {
     }
 }
 
-// Cameras have the same orientation: with o the target's place in the source's plane, a point at X of the target's
-// space is at X + o of the source's.
+// All cameras have the same orientation. With o the target's position in the image camera's plane, the point X of the
+// target's space is X + o in the image camera's space.
 shared::WarpPath WarpImages::path(std::size_t index, const Camera& target) const {
     const Camera& image = cameras_[index];
     const glm::vec3 moved(target.world_from_camera[3] - image.world_from_camera[3]);

@@ -2,33 +2,33 @@
 #pragma once
 
 #include "core/base/error.h"
-#include "core/gpu/recorder.h"
+#include "core/gpu/command_recorder.h"
 #include "core/render/source/source_planes.h"
 #include "shaders/shared/warp.h"
 
 namespace fieldcast::render {
 
-/// The images that a WarpRenderer searches, on the device: the source with its guard band, and the views of the
-/// residual layer, of which only tiles are known.
+/// The images on the device that a WarpRenderer searches: the source with its guard band, and the views of the residual
+/// layer, of which only some tiles are known.
 class WarpImages {
 public:
     explicit WarpImages(const gpu::Device& device);
 
-    /// As WarpRenderer::upload. Blocks.
+    /// See WarpRenderer::upload. Blocks.
     Decoded<void> upload(const SourceFrame& frame);
 
-    const FrameHeader& header() const { return header_; } ///< of the source, with the residual layer
+    const FrameHeader& header() const { return header_; } ///< of the source, including the residual layer
     std::uint32_t image_count() const { return static_cast<std::uint32_t>(images_.size()); }
     const shared::WarpImage& image(std::size_t index) const { return images_[index]; }
-    const gpu::Buffer& records() const { return records_; } ///< WarpImage of each
+    const gpu::Buffer& records() const { return records_; } ///< WarpImages of all images
     const gpu::BindingLayout& layout() const { return layout_; }
     const gpu::BindingSet& bindings() const { return set_; }
 
-    /// Where image `index` shows what `target` sees.
+    /// Maps pixels of `target` and their inverse depth to pixels of image `index`.
     shared::WarpPath path(std::size_t index, const Camera& target) const;
 
 private:
-    /// Texels and blocks of all images.
+    /// Numbers of texels and blocks of all images.
     struct Room {
         std::uint32_t texels = 0;
         std::uint32_t blocks = 0;
@@ -41,17 +41,17 @@ private:
     void record_bounds();
 
     const gpu::Device& device_;
-    gpu::Recorder recorder_;
+    gpu::CommandRecorder recorder_;
     gpu::BindingLayout layout_;
     gpu::Kernel unpack_;
     gpu::Kernel link_;
     gpu::Kernel bounds_;
     FrameHeader header_;
     std::vector<shared::WarpImage> images_;
-    std::vector<Camera> cameras_; ///< of the images
+    std::vector<Camera> cameras_; ///< cameras of the images
     gpu::Buffer records_;
-    gpu::Buffer colour_;        ///< of the planes being unpacked
-    gpu::Buffer inverse_depth_; ///< likewise
+    gpu::Buffer colour_;        ///< colour plane being unpacked
+    gpu::Buffer inverse_depth_; ///< inverse depth plane being unpacked
     gpu::Buffer tiles_;
     Room reserved_;
     gpu::Buffer texels_;

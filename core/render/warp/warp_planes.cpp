@@ -11,7 +11,7 @@ namespace fieldcast::render {
 
 namespace {
 
-constexpr std::uint32_t kLeastHoles = 2; // of a tile that is sent; single pixels are extended from around as well
+constexpr std::uint32_t kLeastHoles = 2; // of a tile that is sent; single holes are filled from their neighbours
 constexpr float kMostSteps = 65535.0F;
 constexpr float kStepsPerPixel = 32.0F; // rounding moves by half a step
 
@@ -50,7 +50,7 @@ std::vector<LatticePosition> residual_positions(const ViewGrid& grid) {
 }
 
 float choose_inverse_depth_unit(const Camera& source, const ViewGrid& grid, float nearest_m) {
-    float parallax = 0.0F; // pixels · metres, of the farthest view
+    float parallax = 0.0F; // of the farthest view, pixels · metres
     for (const LatticePosition position : residual_positions(grid)) {
         const glm::vec2 moved = glm::vec2(position.col(), position.row()) * grid.geometry.spacing_m;
         parallax = std::max(parallax, source.focal_px * std::max(std::abs(moved.x), std::abs(moved.y)));
@@ -71,14 +71,13 @@ Plane make_inverse_depth(PlaneSemantic semantic, std::span<const float> depth_m,
 }
 
 WarpPlanesRenderer::WarpPlanesRenderer(const gpu::Device& device, const scene::GpuScene& scene, GridRenderer& views)
-    : device_(device), views_(views), surfaces_(device, scene), corner_planes_(device), warp_(device) {}
+    : readback_(device), views_(views), surfaces_(device, scene), corner_planes_(device), warp_(device) {}
 
 void WarpPlanesRenderer::render(const SourcePlanes& source, const ViewGrid& largest, bool has_residual,
                                 SourceFrame& frame) {
     FC_ASSERT(source.source_count() == 1, "views are warped from one source");
-    const std::vector<float> depth_m =
-        gpu::read_buffer_as<float>(device_, source.plane(PlaneSemantic::kDepth), source.pixel_count());
-    const Corners corners = has_residual ? render_corners(source, largest) : Corners{};
+    Corners corners = has_residual ? render_corners(source, largest) : Corners{};
+    const std::vector<float> depth_m = download_depth(source, corners);
     float nearest_m = nearest_of(depth_m, std::numeric_limits<float>::infinity());
     for (const std::vector<float>& of_corner : corners.depth_m) {
         nearest_m = nearest_of(of_corner, nearest_m);
@@ -110,21 +109,32 @@ WarpPlanesRenderer::Corners WarpPlanesRenderer::render_corners(const SourcePlane
         return {};
     }
     Corners corners{views_.render(source, request_of(source.header().source, largest.geometry, positions)), {}};
-    FrameHeader header; // surfaces alone: the corner views as if they were sources
+    FrameHeader header; // surfaces only: the corner views are rendered as if they were sources
     header.source = source.header().source;
     header.source_positions = positions;
     header.source_geometry = largest.geometry;
     corner_planes_.resize(header);
     surfaces_.render(corner_planes_);
-    const std::uint32_t count = corner_planes_.pixel_count();
-    const gpu::Buffer& depth = corner_planes_.plane(PlaneSemantic::kDepth);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        corners.depth_m.push_back(gpu::read_buffer_as<float>(device_, depth, count, std::uint64_t{4} * count * i));
-    }
     return corners;
 }
 
-// Corner by corner: each view adds tiles for what the source and the tiles so far do not show.
+// Depth of the source, which is returned, and of the corner views, in one submission.
+std::vector<float> WarpPlanesRenderer::download_depth(const SourcePlanes& source, Corners& corners) {
+    std::vector<float> depth_m(source.pixel_count());
+    std::vector<gpu::ReadbackPart> parts{{.buffer = &source.plane(PlaneSemantic::kDepth),
+                                          .bytes = std::as_writable_bytes(std::span(depth_m))}};
+    corners.depth_m.assign(corners.views.views.size(), std::vector<float>(corner_planes_.pixel_count()));
+    std::uint64_t offset_bytes = 0;
+    for (std::vector<float>& of_corner : corners.depth_m) {
+        parts.push_back({&corner_planes_.plane(PlaneSemantic::kDepth), offset_bytes,
+                         std::as_writable_bytes(std::span(of_corner))});
+        offset_bytes += of_corner.size() * sizeof(float);
+    }
+    readback_.read(std::move(parts));
+    return depth_m;
+}
+
+// Each corner view adds tiles for what the source and the tiles of earlier views do not show.
 void WarpPlanesRenderer::add_residual(const Corners& corners, const ViewGrid& largest, SourceFrame& frame) {
     const Camera camera = frame.header.source;
     const glm::uvec2 size(camera.width_px, camera.height_px);
@@ -151,7 +161,7 @@ void WarpPlanesRenderer::add_residual(const Corners& corners, const ViewGrid& la
         add_plane(frame, colour.plane());
         add_plane(frame, inverse_depth.plane());
     }
-    if (layer.positions.empty()) { // a grid of one view: planes were promised all the same
+    if (layer.positions.empty()) { // a grid of one view has the promised planes, too
         layer.positions = {LatticePosition{}};
         add_plane(frame, colour.plane());
         add_plane(frame, inverse_depth.plane());

@@ -20,13 +20,13 @@ struct WarpRenderer::State {
     Views download(const FrameHeader& header);
 
     const gpu::Device& device;
-    gpu::Recorder recorder;
+    gpu::CommandRecorder recorder;
     WarpImages images;
     gpu::Kernel search;
     gpu::Kernel fill;
     ViewRequest request;
     std::vector<WarpCounts> counts;
-    std::uint64_t reserved_pixels = 0; ///< over all views, padded
+    std::uint64_t reserved_pixels = 0; ///< pixels of all views, padded, that the buffers hold
     gpu::Buffer paths;
     gpu::Buffer counters;
     gpu::Buffer pixels;
@@ -110,8 +110,8 @@ Decoded<void> WarpRenderer::upload(const SourceFrame& frame) {
 
 Views WarpRenderer::render(const ViewRequest& request) {
     State& s = *state_;
-    FC_ASSERT(s.images.image_count() > 0, "nothing was uploaded");
-    FC_ASSERT(!request.positions.empty() && request.width_px > 0 && request.height_px > 0, "nothing to render");
+    FC_ASSERT(s.images.image_count() > 0, "render() needs upload() first");
+    FC_ASSERT(!request.positions.empty() && request.width_px > 0 && request.height_px > 0, "the request has no pixels");
     s.request = request;
     s.resize();
     s.upload_paths();

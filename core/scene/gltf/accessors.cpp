@@ -11,30 +11,30 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Elements that no byte of the file stands for: accessors without buffer view are zeros.
+/// Limit for accessors without buffer view. Their elements are zeros, so no byte of the file backs them.
 constexpr std::uint64_t kMaxUnbackedElements = 1ULL << 20;
 
 template <class T> T load(const std::byte* bytes) {
     T value;
-    std::memcpy(&value, bytes, sizeof(T)); // little endian, as glTF and every machine we build for
+    std::memcpy(&value, bytes, sizeof(T)); // little endian, as glTF and all supported machines
     return value;
 }
 
-/// One component as it is used: floats are normalised if asked for, indices keep their value.
+/// One component as a float, normalised if `is_normalised`, or as an index with its value unchanged.
 template <class Out, class In> Out convert(const std::byte* bytes, bool is_normalised) {
     const In value = load<In>(bytes);
     if constexpr (std::is_same_v<Out, float> && std::is_integral_v<In>) {
         const auto real = static_cast<float>(value);
-        // Signed types: −128 and −127 are both −1.
+        // The clamp is for signed types, where −128 and −127 are both −1.
         return is_normalised ? std::max(real / static_cast<float>(std::numeric_limits<In>::max()), -1.0F) : real;
     } else {
         return static_cast<Out>(value);
     }
 }
 
-/// Elements lying somewhere in a buffer view.
+/// Elements of an accessor in a buffer view.
 struct Elements {
-    std::span<const std::byte> bytes; ///< from the first element on
+    std::span<const std::byte> bytes; ///< begin at the first element
     std::uint64_t stride = 0;
     std::uint64_t count = 0;
     std::uint64_t components = 0;
@@ -84,7 +84,8 @@ int GltfAccessors::components(int accessor) const {
 std::vector<float> GltfAccessors::read_floats(int accessor, int components, const std::string& object) {
     const int type = entry(accessor).componentType;
     if (this->components(accessor) != components || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-        document_.refuse(accessor_name(object, accessor), "has the wrong type");
+        document_.refuse(accessor_name(object, accessor), "has the wrong type; it needs " + std::to_string(components) +
+                                                              " components, each a float or of 8 or 16 bits");
     }
     std::vector<float> values = read<float>(accessor, object);
     const auto bad = std::find_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); });
@@ -101,7 +102,8 @@ std::vector<std::uint32_t> GltfAccessors::read_indices(int accessor, const std::
                              type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                              type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (components(accessor) != 1 || !is_unsigned) {
-        document_.refuse(accessor_name(object, accessor), "is no list of indices");
+        document_.refuse(accessor_name(object, accessor),
+                         "is not a list of indices; it needs scalars of unsigned 8, 16 or 32 bits");
     }
     return read<std::uint32_t>(accessor, object);
 }
@@ -110,7 +112,8 @@ template <class T> std::vector<T> GltfAccessors::read(int accessor, const std::s
     const tinygltf::Accessor& source = entry(accessor);
     const std::uint64_t components = component_count(source);
     if (source.bufferView < 0 && source.count > kMaxUnbackedElements) {
-        document_.refuse(accessor_name(object, accessor), "has too many elements without a buffer view");
+        document_.refuse(accessor_name(object, accessor),
+                         "has more than " + std::to_string(kMaxUnbackedElements) + " elements but no buffer view");
     }
     std::vector<T> values(source.count * components);
     if (source.bufferView >= 0) {
@@ -146,7 +149,9 @@ template <class T> void GltfAccessors::read_sparse(int accessor, std::vector<T>&
                   source.componentType, replaced.data());
     for (std::uint64_t i = 0; i < count; ++i) {
         if (targets[i] >= source.count || (i > 0 && targets[i] <= targets[i - 1])) {
-            document_.refuse(accessor_name(object, accessor), "sparse indices are out of range or not increasing");
+            document_.refuse(accessor_name(object, accessor), "sparse indices are out of range or not increasing; they "
+                                                              "must increase and be below " +
+                                                                  std::to_string(source.count));
         }
         const auto from = replaced.begin() + static_cast<std::ptrdiff_t>(i * components);
         std::copy_n(from, components, values.begin() + static_cast<std::ptrdiff_t>(targets[i] * components));

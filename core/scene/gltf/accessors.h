@@ -10,8 +10,8 @@
 
 namespace fieldcast::scene {
 
-/// Reads accessors as arrays: conversion from integers, normalisation, sparse substitution. Not thread-safe.
-/// `object` is used in messages. Throws UserError, also when a value is not finite.
+/// Reads accessors as arrays, with conversion from integers, normalisation and sparse substitution. Not thread-safe.
+/// Messages name `object`. Throws UserError, also if a value is not finite.
 class GltfAccessors {
 public:
     GltfAccessors(const GltfDocument& document, GltfBufferViews& views) : document_(document), views_(views) {}
@@ -19,7 +19,7 @@ public:
     std::uint64_t count(int accessor) const { return entry(accessor).count; }
     int components(int accessor) const;
 
-    /// Values in file order, `components` per element; refused if the accessor has another number of components.
+    /// Values in file order, `components` per element. Refuses accessors with another number of components.
     std::vector<float> read_floats(int accessor, int components, const std::string& object);
     /// Scalars of type u8, u16 or u32.
     std::vector<std::uint32_t> read_indices(int accessor, const std::string& object);

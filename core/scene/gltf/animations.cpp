@@ -9,9 +9,9 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Over all channels: many channels may share the same few bytes.
+/// Limit over all channels. A limit on the file's size is not enough, because channels may share the same bytes.
 constexpr std::uint64_t kMaxKeys = 1ULL << 24;
-constexpr float kMaxTime_s = 1e6F; ///< eleven days; in float, keys stand 1/16 s apart there
+constexpr float kMaxTime_s = 1e6F; ///< 11.6 days; floats of this size are 1/16 s apart
 
 class AnimationReader {
 public:
@@ -38,17 +38,17 @@ private:
         }
         const std::uint32_t node = nodes_.scene_index[static_cast<std::size_t>(source.target_node)];
         if (node == kNone) {
-            return; // not part of the scene
+            return; // the node is not part of the scene
         }
         const std::string target = object + ": " + node_name(document_, source.target_node);
         if (nodes_.nodes[node].matrix) {
-            document_.refuse(target, "a node with a matrix cannot be animated");
+            document_.refuse(target, "a node with a matrix cannot be animated; use translation, rotation and scale");
         }
         AnimationChannel channel;
         channel.node = node;
         channel.path = path_of(source.target_path, target);
         if (!targets_.emplace(node, channel.path).second) {
-            document_.warnings.add("several animations move the same node, the last one counts", "channel");
+            document_.warnings.add("several animations move the same node; the last one is used", "channel");
         }
         read_keys(animation.samplers[static_cast<std::size_t>(source.sampler)], target, channel);
         channels_.push_back(std::move(channel));
@@ -59,7 +59,8 @@ private:
             return AnimationPath::kTranslation;
         }
         if (path != "rotation" && path != "scale") {
-            document_.refuse(object, "unknown path '" + path.substr(0, 20) + "'");
+            document_.refuse(object, "unknown path '" + path.substr(0, 20) +
+                                         "'; expected translation, rotation, scale or weights");
         }
         return path == "rotation" ? AnimationPath::kRotation : AnimationPath::kScale;
     }
@@ -69,7 +70,8 @@ private:
             return Interpolation::kLinear;
         }
         if (name != "STEP" && name != "CUBICSPLINE") {
-            document_.refuse(object, "unknown interpolation '" + name.substr(0, 20) + "'");
+            document_.refuse(object, "unknown interpolation '" + name.substr(0, 20) +
+                                         "'; expected LINEAR, STEP or CUBICSPLINE");
         }
         return name == "STEP" ? Interpolation::kStep : Interpolation::kCubic;
     }
@@ -78,19 +80,21 @@ private:
         channel.interpolation = interpolation_of(sampler.interpolation, object);
         const std::uint64_t values_per_key = channel.interpolation == Interpolation::kCubic ? 3 : 1;
         if (accessors_.count(sampler.output) != accessors_.count(sampler.input) * values_per_key) {
-            document_.refuse(object, "has not as many values as times");
+            document_.refuse(object, "needs as many values as times, with CUBICSPLINE three times as many");
         }
         key_count_ += accessors_.count(sampler.output);
         if (key_count_ > kMaxKeys) {
-            document_.refuse(object, "more than " + std::to_string(kMaxKeys) + " animation values in all");
+            document_.refuse(object, "brings the file to more than " + std::to_string(kMaxKeys) +
+                                         " animation values, the limit; use fewer keys");
         }
         channel.times_s = accessors_.read_floats(sampler.input, 1, object + ": times");
         if (channel.times_s.front() < 0.0F || std::adjacent_find(channel.times_s.begin(), channel.times_s.end(),
                                                                  std::greater_equal<>()) != channel.times_s.end()) {
-            document_.refuse(object, "times are negative or not increasing");
+            document_.refuse(object, "times are negative or not increasing; each must be greater than the one before");
         }
         if (channel.times_s.back() > kMaxTime_s) {
-            document_.refuse(object, "lasts longer than " + std::to_string(static_cast<int>(kMaxTime_s)) + " s");
+            document_.refuse(object, "lasts longer than " + std::to_string(static_cast<int>(kMaxTime_s)) +
+                                         " s, the limit; make the animation shorter");
         }
         if (channel.path == AnimationPath::kRotation) {
             channel.values = accessors_.read_vectors<4>(sampler.output, object + ": values");
@@ -102,12 +106,13 @@ private:
         }
     }
 
-    /// Of cubic keys only the middle one of three is a rotation, the others are tangents.
+    /// Of the three values of a cubic key only the middle one is a rotation; the others are tangents.
     void normalise_rotations(AnimationChannel& channel, std::uint64_t values_per_key, const std::string& object) const {
         for (std::size_t i = values_per_key / 2; i < channel.values.size(); i += values_per_key) {
             const float length = glm::length(channel.values[i]);
             if (!(length > 1e-6F && length < 1e6F)) {
-                document_.refuse(object, "value " + std::to_string(i) + " is not a rotation");
+                document_.refuse(object, "value " + std::to_string(i) +
+                                             " is not a rotation: its length must be between 1e-6 and 1e6");
             }
             channel.values[i] /= length;
         }

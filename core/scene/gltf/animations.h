@@ -8,7 +8,7 @@
 
 namespace fieldcast::scene {
 
-/// Channels of all animations that move nodes of the scene; marks those nodes and all below them. Throws UserError.
+/// Channels of all animations that move nodes of the scene. Marks those nodes and their descendants. Throws UserError.
 std::vector<AnimationChannel> read_animations(GltfDocument& document, GltfAccessors& accessors, GltfNodes& nodes);
 
 } // namespace fieldcast::scene

@@ -18,7 +18,7 @@ struct Compression {
     std::uint64_t stride = 0;
 };
 
-/// Sizes are integers up to 2⁵³, but tinygltf keeps extension members in an int.
+/// A member that holds a size. tinygltf keeps extension members in an int, so larger sizes are refused earlier.
 std::uint64_t size_member(const tinygltf::Value& extension, const char* key) {
     const int value = extension.Has(key) ? extension.Get(key).GetNumberAsInt() : 0;
     return value < 0 ? 0 : static_cast<std::uint64_t>(value);
@@ -34,18 +34,19 @@ Compression read_compression(const GltfDocument& document, const tinygltf::Value
     const std::uint64_t offset = size_member(extension, "byteOffset");
     const std::uint64_t length = size_member(extension, "byteLength");
     if (!extension.Has("buffer") || index >= document.buffers.size()) {
-        document.refuse(object, "compressed data has no buffer");
+        document.refuse(object, "compressed data has no buffer; the extension must name one of the file");
     }
     const std::span<const std::byte> buffer = document.buffers[index].bytes;
     if (length == 0 || offset + length > buffer.size()) {
-        document.refuse(object, "compressed data lies outside its buffer");
+        document.refuse(object,
+                        "compressed data lies outside its buffer of " + std::to_string(buffer.size()) + " bytes");
     }
     return {buffer.subspan(offset, length), text_member(extension, "mode"), text_member(extension, "filter"),
             size_member(extension, "count"), size_member(extension, "byteStride")};
 }
 
-/// The most bytes that `source` can stand for: per 16 values of one byte lane the vertex codec needs at least two
-/// bits, the index codecs at least one byte per triangle or index. Keeps small files from claiming huge arrays.
+/// The most bytes that `source` can decode to. The vertex codec needs at least two bits per 16 values of one byte lane,
+/// the index codecs at least one byte per triangle or index. The limit keeps small files from claiming huge arrays.
 std::uint64_t max_decoded_bytes(const Compression& compression) {
     const std::uint64_t size = compression.source.size();
     if (compression.mode == "ATTRIBUTES") {
@@ -58,7 +59,8 @@ void check_compression(const GltfDocument& document, const Compression& c, std::
                        const std::string& object) {
     const bool is_vertices = c.mode == "ATTRIBUTES";
     if (!is_vertices && c.mode != "TRIANGLES" && c.mode != "INDICES") {
-        document.refuse(object, "unknown compression mode '" + c.mode.substr(0, 20) + "'");
+        document.refuse(object, "unknown compression mode '" + c.mode.substr(0, 20) +
+                                    "'; expected ATTRIBUTES, TRIANGLES or INDICES");
     }
     const bool fits_mode = is_vertices ? c.stride >= 4 && c.stride <= 256 && c.stride % 4 == 0
                                        : (c.stride == 2 || c.stride == 4) && (c.mode == "INDICES" || c.count % 3 == 0);
@@ -70,7 +72,8 @@ void check_compression(const GltfDocument& document, const Compression& c, std::
         document.refuse(object, "stride, count or filter does not fit compression mode " + c.mode);
     }
     if (c.count == 0 || c.count * c.stride != byte_length) { // both below 2³²
-        document.refuse(object, "compressed count and stride do not give its byteLength");
+        document.refuse(object,
+                        "compressed count times byteStride is not its byteLength of " + std::to_string(byte_length));
     }
     if (byte_length > max_decoded_bytes(c)) {
         document.refuse(object, std::to_string(c.source.size()) + " compressed bytes cannot hold " +
@@ -110,7 +113,7 @@ std::span<const std::byte> GltfBufferViews::bytes(int view) {
     const GltfBuffer& buffer = document_.buffers[static_cast<std::size_t>(entry.buffer)];
     if (buffer.bytes.empty()) {
         document_.refuse(object_name("bufferView", static_cast<std::size_t>(view), entry.name),
-                         "refers to a fallback buffer but is not compressed");
+                         "refers to a fallback buffer, which has no data, but is not compressed");
     }
     return buffer.bytes.subspan(entry.byteOffset, entry.byteLength);
 }
@@ -124,12 +127,12 @@ std::span<const std::byte> GltfBufferViews::decoded_bytes(int view) {
     const Compression compression = read_compression(document_, entry.extensions.at(kExtension), object);
     check_compression(document_, compression, entry.byteLength, object);
     if (entry.byteLength > bytes_left_) {
-        document_.refuse(object, "decompressed data exceeds the limit on the size of all files");
+        document_.refuse(object, "decompressed data exceeds the limit on the size of all files; use a simpler scene");
     }
     bytes_left_ -= entry.byteLength;
     std::vector<std::byte> out(entry.byteLength);
     if (decode(compression, out) != 0) {
-        document_.refuse(object, "compressed data is broken");
+        document_.refuse(object, "compressed data is broken; export the file again");
     }
     return decoded_.emplace(view, std::move(out)).first->second;
 }

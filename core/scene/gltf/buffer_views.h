@@ -14,11 +14,11 @@ namespace fieldcast::scene {
 /// Bytes of buffer views; those with EXT_meshopt_compression are decoded on first use. Not thread-safe.
 class GltfBufferViews {
 public:
-    /// Keeps a reference to `document`. `max_decoded_bytes`: of all compressed views together.
+    /// Keeps a reference to `document`. `max_decoded_bytes`: limit for all compressed views together.
     GltfBufferViews(const GltfDocument& document, std::uint64_t max_decoded_bytes)
         : document_(document), bytes_left_(max_decoded_bytes) {}
 
-    /// As long as the view's byteLength. Throws UserError.
+    /// The view's bytes, byteLength of them. Throws UserError.
     std::span<const std::byte> bytes(int view);
 
 private:

@@ -73,7 +73,7 @@ private:
             document_.refuse(object, decoded.error().message);
         }
         Bytes bytes{{}, std::move(*decoded)};
-        bytes.view = bytes.owned; // the heap memory stays where it is when the vector moves
+        bytes.view = bytes.owned; // moving the vector does not move its heap memory
         return bytes;
     }
 
@@ -81,7 +81,7 @@ private:
         const std::string object = object_name("buffer", index, text_member(entry, "name"));
         const auto length = entry.find("byteLength");
         if (length == entry.end() || *length == 0) {
-            document_.refuse(object, "has no byteLength");
+            document_.refuse(object, "has no byteLength; it must be at least 1");
         }
         GltfBuffer buffer{length->get<std::uint64_t>(), {}, {}};
         const json::json_pointer fallback("/extensions/EXT_meshopt_compression/fallback");
@@ -90,7 +90,7 @@ private:
         }
         const std::string uri = text_member(entry, "uri");
         if (uri.empty() && (index != 0 || binary.empty())) {
-            document_.refuse(object, "has neither a URI nor a binary chunk");
+            document_.refuse(object, "has neither a URI nor a binary chunk; it needs one of them");
         }
         Bytes bytes = uri.empty() ? Bytes{binary, {}} : read_uri(uri, object);
         if (bytes.view.size() < buffer.byte_length) {
@@ -107,7 +107,7 @@ private:
         const std::string label = uri.empty() || is_data_uri(uri) ? text_member(entry, "name") : uri;
         GltfImage image{object_name("image", index, label), entry.value("bufferView", -1), {}, {}};
         if (uri.empty() == (image.buffer_view < 0)) {
-            document_.refuse(image.name, "needs a URI or a buffer view, not both");
+            document_.refuse(image.name, "needs exactly one of a URI and a buffer view");
         }
         if (!uri.empty()) {
             Bytes bytes = read_uri(uri, image.name);
@@ -139,14 +139,14 @@ private:
         } catch (const std::exception& exception) {
             error += exception.what();
         }
-        // tinygltf reports some missing properties and goes on without the object that lacks them.
+        // tinygltf reports some missing properties, but continues without the object that lacks them.
         if (!is_loaded || !error.empty()) {
             std::replace(error.begin(), error.end(), '\n', ' ');
-            document_.refuse("json", error.empty() ? "cannot be parsed" : error);
+            document_.refuse("json", error.empty() ? "cannot be parsed as glTF 2.0" : error);
         }
     }
 
-    /// Such channels are legal and have no meaning without an extension.
+    /// Removes animation channels without target node. They are legal, but have no meaning without an extension.
     static void drop_channels_without_node(json& root) {
         if (!root.contains("animations")) {
             return;

@@ -13,23 +13,25 @@
 
 namespace fieldcast::scene {
 
+/// A buffer of the file.
 struct GltfBuffer {
     std::uint64_t byte_length = 0;
     std::span<const std::byte> bytes;  ///< empty: a fallback buffer of EXT_meshopt_compression, never read
-    std::vector<std::byte> data_bytes; ///< what `bytes` refers to, if it came from a data URI
+    std::vector<std::byte> data_bytes; ///< owns `bytes` if they come from a data URI
 };
 
+/// A compressed image of the file.
 struct GltfImage {
     std::string name;                  ///< "image 3 'bricks.jpg'"
-    int buffer_view = -1;              ///< where the compressed image lies, if not in `bytes`
+    int buffer_view = -1;              ///< view of the compressed image; −1: it is in `bytes`
     std::span<const std::byte> bytes;  ///< compressed
     std::vector<std::byte> data_bytes; ///< as in GltfBuffer
 };
 
 /// A parsed glTF file with the bytes it refers to. All indices are valid, all accessors lie within their buffer views.
-/// `model` has no buffers, images and skins: tinygltf would read those without any check.
+/// `model` has no buffers, images and skins, because tinygltf would read those without any check.
 struct GltfDocument {
-    std::string name; ///< of the file, for messages
+    std::string name; ///< file name, for messages
     SceneFiles files;
     tinygltf::Model model;
     std::vector<GltfBuffer> buffers;
@@ -45,7 +47,7 @@ struct GltfDocument {
 /// Reads a .gltf or .glb file and everything it refers to, without decoding images. Throws UserError.
 GltfDocument read_gltf_document(const std::filesystem::path& file, const LoadOptions& options);
 
-/// Reads the same files, for those who need only the bytes.
+/// Reads the same files without parsing the model, for callers that need only the bytes. Throws UserError.
 SceneFiles read_scene_files(const std::filesystem::path& file, const LoadOptions& options);
 
 /// Throws UserError unless every index and every range in the document is valid.

@@ -11,11 +11,11 @@ namespace fieldcast::scene {
 /// An extension that a glTF file uses.
 struct ExtensionUse {
     std::string name;
-    bool is_required = false; ///< by the file
-    bool is_read = false;     ///< by the loader; else what it says is left out, with a warning
+    bool is_required = false; ///< the file requires it
+    bool is_read = false;     ///< the loader reads it; otherwise it is ignored with a warning
 };
 
-/// In the order of the file. Throws UserError, also for required extensions that the loader does not read.
+/// Extensions in the order of the file. Throws UserError, also for required extensions that the loader does not read.
 std::vector<ExtensionUse> read_extensions(const std::filesystem::path& file, const SceneLimits& limits = {});
 
 } // namespace fieldcast::scene

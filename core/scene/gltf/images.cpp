@@ -20,7 +20,7 @@ struct CompressedImage {
     std::span<const std::byte> bytes;
 };
 
-/// Decodes images on several threads. The first failure, in the order of the file, is the one reported.
+/// Decodes images on several threads. Reports the failure that is the first in the order of the file.
 class ImageDecoder {
 public:
     ImageDecoder(const GltfDocument& document, std::vector<CompressedImage> sources, const SceneLimits& limits)
@@ -62,7 +62,8 @@ private:
         const std::uint64_t pixels = std::uint64_t{decoded.width_px} * decoded.height_px;
         if (total_pixels_.fetch_add(pixels) + pixels > limits_.max_total_image_pixels) {
             document_.refuse(source.name, "all images together exceed " +
-                                              std::to_string(limits_.max_total_image_pixels) + " pixels");
+                                              std::to_string(limits_.max_total_image_pixels) +
+                                              " pixels; use fewer or smaller textures");
         }
         return {source.name, decoded.width_px, decoded.height_px, std::move(decoded.pixels)};
     }

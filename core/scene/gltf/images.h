@@ -8,7 +8,7 @@
 
 namespace fieldcast::scene {
 
-/// Decodes the images that `textures` use, several at a time, and makes `Texture::image` count those.
+/// Decodes the images that `textures` use, several at a time. Renumbers `Texture::image` to index the result.
 /// Throws UserError.
 std::vector<Image> decode_images(const GltfDocument& document, GltfBufferViews& views, const SceneLimits& limits,
                                  std::vector<Texture>& textures);

@@ -2,6 +2,7 @@
 #include "core/scene/gltf/json.h"
 
 #include "core/base/error.h"
+#include "core/scene/gltf/foreign_format.h"
 #include "core/scene/load_report.h"
 
 #include <algorithm>
@@ -38,17 +39,19 @@ struct Chunks {
     std::span<const std::byte> binary;
 };
 
-/// Splits a .glb; a file without its magic is all JSON.
+/// Splits a .glb into its chunks. A file without the magic of a .glb is JSON as a whole.
 Chunks split_container(std::span<const std::byte> bytes, const std::string& file) {
     if (bytes.size() < 4 || u32_at(bytes, 0) != kGlbMagic) {
         return {bytes, {}};
     }
     if (bytes.size() < 20 || u32_at(bytes, 4) != 2) {
-        refuse(file, "glb header", bytes.size() < 20 ? "file is truncated" : "only version 2 is supported");
+        refuse(file, "glb header", bytes.size() < 20 ? "file is truncated; a .glb has at least 20 bytes"
+                                                      : "only version 2 is supported; export the scene as glTF 2.0");
     }
     const std::size_t length = u32_at(bytes, 8);
     if (length < 20 || length > bytes.size()) {
-        refuse(file, "glb header", "claims " + std::to_string(length) + " bytes of " + std::to_string(bytes.size()));
+        refuse(file, "glb header",
+               "claims " + std::to_string(length) + " bytes, but the file has " + std::to_string(bytes.size()));
     }
     Chunks chunks;
     bool is_first = true;
@@ -56,10 +59,10 @@ Chunks split_container(std::span<const std::byte> bytes, const std::string& file
         const std::size_t size = u32_at(rest, 0);
         const std::uint32_t type = u32_at(rest, 4);
         if (size > rest.size() - 8) {
-            refuse(file, "glb chunk", "claims " + std::to_string(size) + " bytes beyond the end of the file");
+            refuse(file, "glb chunk", "claims " + std::to_string(size) + " bytes and ends beyond the end of the file");
         }
         if (is_first != (type == kJsonChunk)) {
-            refuse(file, "glb chunk", is_first ? "the first chunk is not JSON" : "more than one JSON chunk");
+            refuse(file, "glb chunk", is_first ? "the first chunk is not JSON" : "only the first chunk may be JSON");
         }
         if (is_first) {
             chunks.json = rest.subspan(8, size);
@@ -71,7 +74,7 @@ Chunks split_container(std::span<const std::byte> bytes, const std::string& file
     return chunks;
 }
 
-/// Where byte number `byte` (from 1) stands, for people.
+/// Line and column of byte number `byte` (from 1), for messages.
 std::string place_in(std::span<const std::byte> text, std::size_t byte) {
     const auto before = text.first(std::min(text.size(), std::max(byte, std::size_t{1}) - 1));
     const auto lines = std::ranges::count(before, std::byte{'\n'});
@@ -81,21 +84,25 @@ std::string place_in(std::span<const std::byte> text, std::size_t byte) {
 
 nlohmann::json parse_text(std::span<const std::byte> text, const std::string& file) {
     if (text.size() > kMaxJsonBytes) {
-        refuse(file, "json", "larger than 256 MiB");
+        refuse(file, "json", "is larger than 256 MiB, the limit");
     }
     const char* begin = reinterpret_cast<const char*>(text.data());
     const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
         if (depth > kMaxDepth) {
-            refuse(file, "json", "nested deeper than " + std::to_string(kMaxDepth) + " levels");
+            refuse(file, "json", "is nested deeper than " + std::to_string(kMaxDepth) + " levels, the limit");
         }
         return true;
     };
     try {
         return nlohmann::json::parse(begin, begin + text.size(), check_depth);
     } catch (const nlohmann::json::parse_error& error) {
-        refuse(file, "json", place_in(text, error.byte) + ": this is no JSON; a scene is a glTF 2.0 file, .gltf or .glb");
+        if (const auto problem = foreign_format(text, file)) {
+            refuse(file, "format", *problem);
+        }
+        refuse(file, "json",
+               place_in(text, error.byte) + ": this is not JSON; a scene must be a glTF 2.0 file, .gltf or .glb");
     } catch (const nlohmann::json::exception&) {
-        refuse(file, "json", "holds numbers or texts that no glTF file has");
+        refuse(file, "json", "holds a number beyond the range of double precision");
     }
 }
 
@@ -107,15 +114,15 @@ const nlohmann::json* find_object(const nlohmann::json& parent, const char* key)
 void check_version(const nlohmann::json& root, const std::string& file) {
     const nlohmann::json* asset = find_object(root, "asset");
     if (asset == nullptr || !asset->contains("version") || !asset->at("version").is_string()) {
-        refuse(file, "asset", "has no version");
+        refuse(file, "asset", "has no version; glTF 2.0 requires it");
     }
     const auto version = asset->at("version").get<std::string>();
     if (!version.starts_with("2.")) {
-        refuse(file, "asset", "version " + version.substr(0, 20) + " is not supported, only 2.0");
+        refuse(file, "asset", "version " + version.substr(0, 20) + " is not supported; export the scene as glTF 2.0");
     }
     const auto minimum = asset->find("minVersion");
     if (minimum != asset->end() && *minimum != "2.0") {
-        refuse(file, "asset", "needs a newer version than 2.0");
+        refuse(file, "asset", "needs a newer version than 2.0; export the scene as glTF 2.0");
     }
 }
 
@@ -127,7 +134,8 @@ void check_required_extensions(const nlohmann::json& root, const std::string& fi
     for (const nlohmann::json& entry : *required) {
         const std::string name = entry.is_string() ? entry.get<std::string>() : std::string();
         if (!is_supported_extension(name)) {
-            refuse(file, "extensionsRequired", "extension '" + name.substr(0, 60) + "' is not supported");
+            refuse(file, "extensionsRequired",
+                   "extension '" + name.substr(0, 60) + "' is not supported; export without it");
         }
     }
 }
@@ -142,7 +150,7 @@ GltfJson parse_gltf_json(std::span<const std::byte> bytes, const std::string& fi
     const Chunks chunks = split_container(bytes, file);
     GltfJson json{parse_text(chunks.json, file), chunks.binary};
     if (!json.root.is_object()) {
-        refuse(file, "json", "the root is not an object");
+        refuse(file, "json", "the root is not an object; a glTF file is one JSON object");
     }
     check_version(json.root, file);
     check_gltf_properties(json.root, file);

@@ -12,13 +12,13 @@ namespace fieldcast::scene {
 /// The JSON of a .gltf or .glb file and the binary chunk of the latter.
 struct GltfJson {
     nlohmann::json root;
-    std::span<const std::byte> binary; ///< part of the bytes it was parsed from; empty: no chunk
+    std::span<const std::byte> binary; ///< part of the bytes given to parse_gltf_json(); empty: no chunk
 };
 
-/// Parses and checks everything that can be checked without knowing the file's buffers: container, depth, types and
-/// ranges of all known properties, version, required extensions. `file` is used in messages. Throws UserError.
+/// Parses the file and makes all checks that do not need its buffers: container, depth, types and ranges of all known
+/// properties, version, required extensions. Messages name `file`. Throws UserError.
 ///
-/// tinygltf reads properties of a wrong type as absent and truncates large integers, so this has to come first.
+/// tinygltf reads properties of a wrong type as absent and truncates large integers, so these checks come first.
 GltfJson parse_gltf_json(std::span<const std::byte> bytes, const std::string& file);
 
 /// Whether the loader implements the extension.

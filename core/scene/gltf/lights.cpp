@@ -9,7 +9,7 @@ namespace fieldcast::scene {
 
 namespace {
 
-constexpr double kSunRadiusDeg = 0.2665; // glTF gives none: every directional light is the sun unless it says otherwise
+constexpr double kSunRadiusDeg = 0.2665; // glTF has no such property; the default is the size of the sun
 constexpr const char* kRadiusMember = "angular_radius_deg";
 
 LightType light_type(const GltfDocument& document, const std::string& type, const std::string& object) {
@@ -17,22 +17,22 @@ LightType light_type(const GltfDocument& document, const std::string& type, cons
         return LightType::kDirectional;
     }
     if (type != "point" && type != "spot") {
-        document.refuse(object, "unknown type '" + type.substr(0, 20) + "'");
+        document.refuse(object, "unknown type '" + type.substr(0, 20) + "'; expected directional, point or spot");
     }
     return type == "point" ? LightType::kPoint : LightType::kSpot;
 }
 
-/// The node's extras win over the light's, because several nodes may share a light.
+/// Angular radius from the extras, degrees. The node's extras override the light's, as several nodes may share a light.
 double angular_radius_deg(const tinygltf::Light& light, const tinygltf::Node& node) {
     return number_member(node.extras, kRadiusMember, number_member(light.extras, kRadiusMember, kSunRadiusDeg));
 }
 
 void read_cone(const GltfDocument& document, const tinygltf::SpotLight& spot, const std::string& object, Light& light) {
-    constexpr double kMaxCone = 1.570797; // π/2, as far as single precision tells
+    constexpr double kMaxCone = 1.570797; // π/2, rounded up to be safe in single precision
     light.outer_cone_rad = checked_float(document, spot.outerConeAngle, object + ": outerConeAngle", {0.0, kMaxCone});
     light.inner_cone_rad = checked_float(document, spot.innerConeAngle, object + ": innerConeAngle", {0.0, kMaxCone});
     if (!(light.inner_cone_rad < light.outer_cone_rad)) {
-        document.refuse(object, "innerConeAngle is not smaller than outerConeAngle");
+        document.refuse(object, "innerConeAngle must be smaller than outerConeAngle");
     }
 }
 
@@ -49,7 +49,7 @@ Light read_light(const GltfDocument& document, const tinygltf::Light& source, co
         light.intensity[i] = checked_float(document, intensity, object + ": intensity", kEmissionRange);
     }
     const float range = checked_float(document, source.range, object + ": range", {});
-    if (range > 0.0F) { // tinygltf: 0 is absent
+    if (range > 0.0F) { // tinygltf returns 0 for an absent range
         light.range_m = range;
     }
     if (light.type == LightType::kSpot) {

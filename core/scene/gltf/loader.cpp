@@ -81,7 +81,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     try {
         return load(file, options);
     } catch (const std::bad_alloc&) {
-        refuse(file.filename().string(), "file", "does not fit in memory");
+        refuse(file.filename().string(), "file",
+               "does not fit in memory; use a simpler scene or a machine with more memory");
     }
 }
 

@@ -7,7 +7,7 @@
 namespace fieldcast::scene {
 
 /// Loads a .gltf or .glb file with everything it refers to.
-/// Throws UserError naming file, object and reason ("lamp.gltf: accessor 12: 900 bytes beyond buffer view 3").
+/// Throws UserError with file, object and reason ("lamp.gltf: accessor 12: ends 900 bytes beyond bufferView 3").
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 } // namespace fieldcast::scene

@@ -12,7 +12,7 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// Factors from 0 to 1; what an exporter rounded to a little more is clamped.
+/// Range of factors from 0 to 1. Values up to 1.001, from an exporter's rounding, are clamped to 1.
 constexpr Range kUnitRange{0.0, 1.001};
 constexpr double kMaxIor = 10.0;
 
@@ -29,7 +29,7 @@ public:
         const auto& sources = document_.model.materials;
         if (sources.size() + 1 > kMaxMaterials) {
             document_.refuse("materials", std::to_string(sources.size()) + " exceed the limit of " +
-                                              std::to_string(kMaxMaterials - 1));
+                                              std::to_string(kMaxMaterials - 1) + "; merge equal materials");
         }
         for (std::size_t i = 0; i < sources.size(); ++i) {
             surfaces_.materials.push_back(read_material(sources[i], object_name("material", i, sources[i].name)));
@@ -79,7 +79,7 @@ private:
     void read_dielectric(const tinygltf::Material& source, const std::string& object, Material& material) {
         if (const auto* extension = find_extension(source.extensions, "KHR_materials_ior")) {
             const double ior = number_member(*extension, "ior", 1.5);
-            // The extension uses 0 for "reflects everything".
+            // In this extension, 0 means that the surface reflects all light.
             material.ior = checked_float(document_, ior, object + ": ior", {ior == 0.0 ? 0.0 : 1.0, kMaxIor});
         }
         if (const auto* extension = find_extension(source.extensions, "KHR_materials_transmission")) {
@@ -97,7 +97,7 @@ private:
             return AlphaMode::kOpaque;
         }
         if (mode != "MASK" && mode != "BLEND") {
-            document_.refuse(object, "unknown alphaMode '" + mode.substr(0, 20) + "'");
+            document_.refuse(object, "unknown alphaMode '" + mode.substr(0, 20) + "'; expected OPAQUE, MASK or BLEND");
         }
         return mode == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
     }
@@ -107,7 +107,7 @@ private:
         parsed.index = static_cast<int>(number_member(info, "index", -1.0));
         parsed.texCoord = static_cast<int>(number_member(info, "texCoord", 0.0));
         if (parsed.index < 0) {
-            document_.refuse(object, "a texture has no index");
+            document_.refuse(object, "a texture has no index; it must name a texture of the file");
         }
         if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform")) {
             parsed.extensions["KHR_texture_transform"] = info.Get("extensions").Get("KHR_texture_transform");
@@ -137,8 +137,8 @@ private:
         return use;
     }
 
-    /// Translation · rotation · scale. A positive angle turns the coordinates counter-clockwise as seen in the image,
-    /// whose v points down.
+    /// Matrix translation · rotation · scale. A positive angle turns the coordinates counter-clockwise as seen in the
+    /// image, whose v axis points down.
     std::array<glm::vec3, 2> uv_matrix(const tinygltf::Value& transform, const std::string& object) const {
         const auto pair = [&](const char* key, const glm::vec2& fallback) {
             return transform.Has(key)
@@ -153,7 +153,7 @@ private:
         return {glm::vec3(c * scale.x, s * scale.y, offset.x), glm::vec3(-s * scale.x, c * scale.y, offset.y)};
     }
 
-    /// Index into the scene's textures; kNone if no format of the image is supported.
+    /// Index into the scene's textures, to which a new texture is added; kNone if its image has no supported format.
     std::uint32_t keep_texture(int index) {
         const tinygltf::Texture& source = document_.model.textures[static_cast<std::size_t>(index)];
         if (source.source < 0) {
@@ -185,7 +185,7 @@ private:
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
             return Wrap::kClamp;
         default:
-            document_.refuse(object, "unknown wrap mode " + std::to_string(mode));
+            document_.refuse(object, "unknown wrap mode " + std::to_string(mode) + "; expected 10497, 33071 or 33648");
         }
     }
 

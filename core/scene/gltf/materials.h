@@ -8,11 +8,11 @@
 
 namespace fieldcast::scene {
 
-/// Textures and materials. Only textures that a material uses are kept; `Texture::image` still counts the file's
+/// Materials and the textures they use. Other textures are dropped. `Texture::image` is still an index of the file's
 /// images.
 struct GltfSurfaces {
     std::vector<Texture> textures;
-    std::vector<Material> materials; ///< as in the file, then a default one
+    std::vector<Material> materials; ///< those of the file, then the default material
 };
 
 GltfSurfaces read_surfaces(GltfDocument& document);

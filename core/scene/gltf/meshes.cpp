@@ -12,7 +12,7 @@ namespace fieldcast::scene {
 
 namespace {
 
-/// First mesh of a glTF mesh and how many of its primitives are triangles.
+/// The scene's meshes of one glTF mesh: the first one and their number. Each is a primitive of triangles.
 struct MeshRange {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
@@ -39,7 +39,8 @@ public:
 private:
     void add_instances(std::uint32_t node, const MeshRange& range) {
         if (result_.instances.size() + range.count > kMaxInstances) {
-            document_.refuse("nodes", "more than " + std::to_string(kMaxInstances) + " instances");
+            document_.refuse("nodes", "place more than " + std::to_string(kMaxInstances) +
+                                          " instances of primitives, the limit; merge meshes");
         }
         for (std::uint32_t i = 0; i < range.count; ++i) {
             result_.instances.push_back({node, range.first + i});
@@ -70,7 +71,7 @@ private:
     Mesh read_primitive(const tinygltf::Primitive& primitive, const std::string& object) {
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) {
-            document_.refuse(object, "has no POSITION");
+            document_.refuse(object, "has no POSITION, which every primitive needs");
         }
         const std::uint64_t vertex_count = accessors_.count(position->second);
         reserve_budget(primitive, vertex_count, object);
@@ -85,7 +86,7 @@ private:
         mesh.colours = read_colours(primitive, vertex_count, object);
         mesh.triangles = read_triangles(primitive, vertex_count, object);
         if (mesh.normals.empty()) {
-            mesh.tangents.clear(); // glTF: without normals, given tangents do not count
+            mesh.tangents.clear(); // glTF: without normals, tangents must be ignored
             make_flat_normals(mesh);
         }
         normalise_frames(mesh);
@@ -95,13 +96,14 @@ private:
         return mesh;
     }
 
-    /// Many primitives may share the same few bytes, so what they expand to is counted before it is allocated.
+    /// Counts triangles and vertices before they are allocated, because many primitives may share the same few bytes.
     void reserve_budget(const tinygltf::Primitive& primitive, std::uint64_t vertex_count, const std::string& object) {
         const std::uint64_t corners = primitive.indices >= 0 ? accessors_.count(primitive.indices) : vertex_count;
         triangle_count_ += primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
         vertex_count_ += vertex_count;
         if (triangle_count_ > limits_.max_triangles || vertex_count_ / 3 > limits_.max_triangles) {
-            document_.refuse(object, "more than " + std::to_string(limits_.max_triangles) + " triangles in all");
+            document_.refuse(object, "brings the scene to more than " + std::to_string(limits_.max_triangles) +
+                                         " triangles, the limit; simplify its meshes");
         }
     }
 
@@ -113,7 +115,8 @@ private:
             return {};
         }
         if (accessors_.count(found->second) != vertex_count) {
-            document_.refuse(object, std::string(attribute) + " has another length than POSITION");
+            document_.refuse(object, std::string(attribute) +
+                                         " has another length than POSITION; each vertex needs one value");
         }
         return accessors_.read_vectors<N>(found->second, object + ": " + attribute);
     }
@@ -169,13 +172,14 @@ private:
                                          const std::string& object) const {
         const bool is_list = mode == TINYGLTF_MODE_TRIANGLES;
         if (corners.size() < 3 || (is_list && corners.size() % 3 != 0)) {
-            document_.refuse(object, std::to_string(corners.size()) + " corners do not form triangles");
+            document_.refuse(object, std::to_string(corners.size()) + " corners do not form triangles; a list needs a "
+                                                                      "multiple of 3, a strip or fan at least 3");
         }
         std::vector<glm::uvec3> triangles(is_list ? corners.size() / 3 : corners.size() - 2);
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             if (is_list) {
                 triangles[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-            } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) { // every other triangle is turned round
+            } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) { // every other triangle has the opposite winding
                 triangles[i] = {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]};
             } else {
                 triangles[i] = {corners[i + 1], corners[i + 2], corners[0]};

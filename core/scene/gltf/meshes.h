@@ -9,11 +9,11 @@
 namespace fieldcast::scene {
 
 struct GltfMeshes {
-    std::vector<Mesh> meshes;        ///< one per primitive that some node shows
-    std::vector<Instance> instances; ///< in the order of nodes, then of primitives
+    std::vector<Mesh> meshes;        ///< one per primitive that at least one node shows
+    std::vector<Instance> instances; ///< ordered by node, then by primitive
 };
 
-/// Throws UserError, before allocating, when a limit is exceeded.
+/// Reads the meshes that nodes show, and their instances. Throws UserError, before allocating if a limit is exceeded.
 GltfMeshes read_meshes(GltfDocument& document, GltfAccessors& accessors, const GltfNodes& nodes,
                        const SceneLimits& limits);
 

@@ -32,14 +32,14 @@ private:
             for (const int child : document_.model.nodes[i].children) {
                 int& parent = parents_[static_cast<std::size_t>(child)];
                 if (parent != -1) {
-                    document_.refuse(node_name(document_, child), "has two parents");
+                    document_.refuse(node_name(document_, child), "has two parents; a node may have only one");
                 }
                 parent = static_cast<int>(i);
             }
         }
     }
 
-    /// With one parent each, nodes that no root reaches form cycles.
+    /// Every node has at most one parent, so nodes that are not reached from a root form cycles.
     void check_cycles() const {
         std::vector<bool> is_reached(parents_.size(), false);
         std::vector<int> open;
@@ -56,19 +56,21 @@ private:
         }
         for (std::size_t i = 0; i < is_reached.size(); ++i) {
             if (!is_reached[i]) {
-                document_.refuse(node_name(document_, static_cast<int>(i)), "is its own ancestor or below such a node");
+                document_.refuse(node_name(document_, static_cast<int>(i)),
+                                 "is its own ancestor or below such a node; nodes must form trees");
             }
         }
     }
 
-    /// Of the default scene; of the first one if the file names no default; all roots if it has no scenes.
+    /// Roots of the default scene, or of the first scene if the file names no default. Without scenes: all roots.
     std::vector<int> scene_roots() const {
         const tinygltf::Model& model = document_.model;
         if (!model.scenes.empty()) {
             const auto index = static_cast<std::size_t>(std::max(model.defaultScene, 0));
             for (const int root : model.scenes[index].nodes) {
                 if (parents_[static_cast<std::size_t>(root)] != -1) {
-                    document_.refuse(object_name("scene", index), node_name(document_, root) + " is not a root");
+                    document_.refuse(object_name("scene", index),
+                                     node_name(document_, root) + " is not a root, because it has a parent");
                 }
             }
             return model.scenes[index].nodes;
@@ -82,14 +84,14 @@ private:
         return roots;
     }
 
-    /// Depth first, children in their order; a loop, because files may nest deeper than our stack.
+    /// Adds a tree depth first, children in their order. It is a loop, because files may nest deeper than the stack.
     void add_tree(int root) {
         std::vector<int> open{root};
         while (!open.empty()) {
             const int index = open.back();
             open.pop_back();
             if (result_.scene_index[static_cast<std::size_t>(index)] != kNone) {
-                continue; // a scene may name a root twice
+                continue; // the scene names this root twice
             }
             result_.scene_index[static_cast<std::size_t>(index)] = static_cast<std::uint32_t>(result_.nodes.size());
             result_.file_index.push_back(index);
@@ -126,7 +128,7 @@ private:
         const auto xyzw = checked_vector<glm::vec4>(document_, values, object, {-2.0, 2.0});
         const float length = glm::length(xyzw);
         if (!(length > 1e-6F)) {
-            document_.refuse(object, "is not a rotation");
+            document_.refuse(object, "is not a rotation: the quaternion's length must be above 1e-6");
         }
         return {xyzw.w / length, xyzw.x / length, xyzw.y / length, xyzw.z / length};
     }
@@ -143,7 +145,7 @@ private:
         constexpr float kTolerance = 1e-5F; // rounding in exporters
         for (int column = 0; column < 4; ++column) {
             if (std::abs(matrix[column].w - (column == 3 ? 1.0F : 0.0F)) > kTolerance) {
-                document_.refuse(object, "matrix is not affine");
+                document_.refuse(object, "matrix is not affine: its last row must be 0, 0, 0, 1");
             }
             matrix[column].w = column == 3 ? 1.0F : 0.0F;
         }

@@ -16,11 +16,11 @@ struct Range {
     double high = std::numeric_limits<float>::max();
 };
 
-/// A property as a float. Refused if it is not finite in single precision or out of `range`.
-/// `object` says where it stands ("material 3 'glass': ior").
+/// A property as a float. Throws UserError if it is not finite in single precision or out of `range`.
+/// `object` names the property in messages ("material 3 'glass': ior").
 float checked_float(const GltfDocument& document, double value, const std::string& object, const Range& range);
 
-/// A list of exactly `out.length()` finite numbers.
+/// A list of exactly `out.length()` finite numbers, each within `range`. Throws UserError otherwise.
 template <class Vector>
 Vector checked_vector(const GltfDocument& document, const std::vector<double>& values, const std::string& object,
                       const Range& range) {
@@ -42,9 +42,9 @@ std::vector<double> numbers_member(const tinygltf::Value& object, const char* ke
 inline constexpr Range kAnyNumber{-static_cast<double>(std::numeric_limits<float>::max()),
                                   std::numeric_limits<float>::max()};
 
-/// Emitted light in any unit: sums and products of such numbers stay finite.
+/// Emitted light in any unit. Sums and products of numbers in this range stay finite.
 inline constexpr Range kEmissionRange{0.0, 1e12};
-/// Texture coordinates and their transforms; beyond, single precision does not tell texels apart.
+/// Texture coordinates and their transforms. Beyond this range, single precision cannot distinguish texels.
 inline constexpr Range kTextureRange{-1e6, 1e6};
 
 } // namespace fieldcast::scene

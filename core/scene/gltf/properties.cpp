@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Types and ranges of glTF properties, by name: within glTF 2.0 and the extensions we know, a name means one thing
-// nearly everywhere, so one table replaces a schema.
+// Types and ranges of glTF properties, by name. In glTF 2.0 and the supported extensions, nearly every name has one
+// meaning, so one table replaces a schema.
 #include "core/scene/gltf/json.h"
 #include "core/scene/load_report.h"
 
@@ -148,7 +148,7 @@ bool is_index(const json& value) {
     return is_integer_up_to(value, kMaxIndex);
 }
 
-/// What `value` should have been, or null if it is.
+/// The problem of a `value` that is not of `kind`; null if it is.
 const char* mismatch(const json& value, Kind kind) {
     switch (kind) {
     case Kind::kIndex:
@@ -183,7 +183,7 @@ const char* mismatch(const json& value, Kind kind) {
     return nullptr;
 }
 
-/// Where the visitor stands; printed only when something is wrong.
+/// Path of the visited value. The text is made only for messages.
 struct Place {
     const Place* parent = nullptr;
     std::string_view key;
@@ -199,7 +199,7 @@ class PropertyVisitor {
 public:
     explicit PropertyVisitor(const std::string& file) : file_(file) {}
 
-    /// Depth is bounded by the parser.
+    /// Checks `value` recursively; the parser limits the depth.
     void visit(const json& value, const Place& place) const {
         if (value.is_array()) {
             for (std::size_t i = 0; i < value.size(); ++i) {
@@ -217,7 +217,7 @@ private:
     void visit_member(const std::string& key, const json& member, const Place& place) const {
         const bool is_in_extensions = place.parent->key == "extensions";
         if (key == "extras" || key == "asset" || (is_in_extensions && !is_supported_extension(key))) {
-            return; // free form
+            return; // these may hold anything
         }
         check(member, kind_of(key, member, place), place);
         visit(member, place);
@@ -233,10 +233,10 @@ private:
     static std::optional<Kind> kind_of(const std::string& key, const json& member, const Place& place) {
         const std::string_view parent = place.parent->key;
         if (key == "nodes" && place.parent->parent != nullptr) {
-            return Kind::kIndexList; // of a scene, not the list of all nodes
+            return Kind::kIndexList; // nodes of a scene, not the list of all nodes
         }
         if ((key == "indices" && parent != "sparse") || (key == "mode" && !member.is_string())) {
-            return Kind::kIndex; // of a primitive
+            return Kind::kIndex; // member of a primitive
         }
         if (key == "indices") {
             return Kind::kObject;
@@ -246,11 +246,11 @@ private:
             return Kind::kIndex; // tinygltf keeps them in an int
         }
         if (key == "target" && !member.is_object()) {
-            return Kind::kIndex; // of a buffer view
+            return Kind::kIndex; // member of a buffer view
         }
         const auto found = kKinds.find(key);
         if (parent == "EXT_meshopt_compression" && found != kKinds.end() && found->second == Kind::kSize) {
-            return Kind::kIndex; // as above
+            return Kind::kIndex; // tinygltf keeps these in an int, too
         }
         return found == kKinds.end() ? std::nullopt : std::optional(found->second);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every index and range of a glTF file. tinygltf checks none of them.
+// Checks every index and range of a glTF file, because tinygltf checks none of them.
 #include "core/scene/gltf/document.h"
 
 #include <concepts>
@@ -38,12 +38,12 @@ public:
 private:
     void check_index(int index, std::size_t count, const std::string& object, const std::string& what) const {
         if (index < 0 || static_cast<std::size_t>(index) >= count) {
-            document_.refuse(object, what + " " + std::to_string(index) + " does not exist (" + std::to_string(count) +
-                                         " in the file)");
+            document_.refuse(object, what + " " + std::to_string(index) + " does not exist; the file has " +
+                                         std::to_string(count));
         }
     }
 
-    /// −1 means absent.
+    /// Like check_index(), but accepts −1, which means absent.
     void check_optional(int index, std::size_t count, const std::string& object, const std::string& what) const {
         if (index != -1) {
             check_index(index, count, object, what);
@@ -59,7 +59,7 @@ private:
                                          std::to_string(buffer.byte_length) + " bytes");
         }
         if (view.byteStride > kMaxStride) {
-            document_.refuse(object, "byteStride is greater than 252");
+            document_.refuse(object, "byteStride is greater than 252, the limit of glTF");
         }
     }
 
@@ -72,10 +72,10 @@ private:
         if (stride < element_bytes) {
             document_.refuse(object, "elements are larger than the stride of bufferView " + std::to_string(view_index));
         }
-        // All three at most 2⁵³ or 2⁸: no overflow in 64 bits.
+        // Offset and count are at most 2⁵³ and sizes at most 2⁸, so 64 bits do not overflow.
         const std::uint64_t end = offset + (count - 1) * stride + element_bytes;
         if (end > view.byteLength) {
-            document_.refuse(object, std::to_string(end - view.byteLength) + " bytes beyond bufferView " +
+            document_.refuse(object, "ends " + std::to_string(end - view.byteLength) + " bytes beyond bufferView " +
                                          std::to_string(view_index));
         }
     }
@@ -83,10 +83,11 @@ private:
     void check_accessor(const tinygltf::Accessor& accessor, const std::string& object) const {
         const std::optional<std::uint64_t> component = component_bytes(accessor.componentType);
         if (!component) {
-            document_.refuse(object, "unknown componentType " + std::to_string(accessor.componentType));
+            document_.refuse(object, "unknown componentType " + std::to_string(accessor.componentType) +
+                                         "; expected 5120 to 5123, 5125 or 5126");
         }
         if (accessor.count == 0) {
-            document_.refuse(object, "has no elements");
+            document_.refuse(object, "has no elements; its count must be at least 1");
         }
         const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
         const std::uint64_t element = *component * static_cast<std::uint64_t>(components);
@@ -101,15 +102,18 @@ private:
     void check_sparse(const tinygltf::Accessor& accessor, std::uint64_t element, const std::string& object) const {
         const auto& sparse = accessor.sparse;
         if (sparse.count < 1 || static_cast<std::uint64_t>(sparse.count) > accessor.count) {
-            document_.refuse(object, "sparse count " + std::to_string(sparse.count) + " is out of range");
+            document_.refuse(object, "sparse count " + std::to_string(sparse.count) +
+                                         " is out of range; expected 1 to " + std::to_string(accessor.count));
         }
         const int type = sparse.indices.componentType;
         if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-            document_.refuse(object, "sparse indices have componentType " + std::to_string(type));
+            document_.refuse(object, "sparse indices have componentType " + std::to_string(type) +
+                                         "; expected 5121, 5123 or 5125");
         }
         const auto count = static_cast<std::uint64_t>(sparse.count);
-        const auto offset_of = [](std::integral auto offset) { return static_cast<std::uint64_t>(offset); }; // ≥ 0: checked as JSON
+        // Offsets are not negative, as the checks of the JSON ensure.
+        const auto offset_of = [](std::integral auto offset) { return static_cast<std::uint64_t>(offset); };
         check_range(sparse.indices.bufferView, offset_of(sparse.indices.byteOffset), count, *component_bytes(type),
                     object + " (sparse indices)");
         check_range(sparse.values.bufferView, offset_of(sparse.values.byteOffset), count, element,
@@ -126,7 +130,7 @@ private:
             check_optional(primitive.indices, model_.accessors.size(), name, "accessor");
             check_optional(primitive.material, model_.materials.size(), name, "material");
             if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-                document_.refuse(name, "unknown mode " + std::to_string(primitive.mode));
+                document_.refuse(name, "unknown mode " + std::to_string(primitive.mode) + "; expected 0 to 6");
             }
         }
     }

@@ -7,8 +7,7 @@ import promises
 
 NOT_OURS = {"build", "out", "third_party", "node_modules"}
 FLAG_SOURCES = {
-    "server": ["server/ops/flags.cpp", "server/ops/limit_flags.cpp", "server/ops/recording_flags.cpp",
-               "server/ops/security_flags.cpp", "server/ops/camera_flags.cpp", "server/ops/job_flags.cpp"],
+    "server": sorted(p.as_posix() for p in pathlib.Path("server/command_line").glob("*flags.cpp")),
     "client": ["client/options.cpp"],
     "load": ["client/load_options.cpp"],
     "bench": sorted(p.as_posix() for p in pathlib.Path("bench").rglob("*.cpp")),

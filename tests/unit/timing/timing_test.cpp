@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "core/timing/log_text.h"
-#include "core/timing/recorder.h"
+#include "core/timing/timing_recorder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -86,7 +86,7 @@ protected:
 
 TEST_F(Timing, CsvRowsFitTheirHeader) {
     const auto file = folder_ / "frames.csv";
-    { Recorder({.frame_log = file, .trace = {}}).add(frame_at(3)); }
+    { TimingRecorder({.frame_log = file, .trace = {}}).add(frame_at(3)); }
     const auto lines = lines_of(file);
     ASSERT_EQ(lines.size(), 2U);
     const auto names = fields_of(lines[0]);
@@ -109,7 +109,7 @@ TEST_F(Timing, CsvRowsFitTheirHeader) {
 TEST_F(Timing, EveryJsonLineIsAnObject) {
     const auto file = folder_ / "frames.jsonl";
     {
-        Recorder recorder({.frame_log = file, .trace = {}});
+        TimingRecorder recorder({.frame_log = file, .trace = {}});
         for (std::uint64_t id = 1; id <= 3; ++id) {
             recorder.add(frame_at(id));
         }
@@ -128,7 +128,7 @@ TEST_F(Timing, EveryJsonLineIsAnObject) {
 TEST_F(Timing, TraceHasATrackPerStageAndSpansOfEveryClientThatClose) {
     const auto file = folder_ / "trace.json";
     {
-        Recorder recorder({.frame_log = {}, .trace = file});
+        TimingRecorder recorder({.frame_log = {}, .trace = file});
         for (std::uint64_t id = 1; id <= 2; ++id) {
             recorder.add(frame_at(id).made);
             recorder.add(frame_at(id));
@@ -164,7 +164,7 @@ TEST_F(Timing, TraceHasATrackPerStageAndSpansOfEveryClientThatClose) {
 
 TEST_F(Timing, StagesOnTheDeviceStandOneAfterTheOther) {
     const auto file = folder_ / "trace.json";
-    { Recorder({.frame_log = {}, .trace = file}).add(frame_at(0).made); }
+    { TimingRecorder({.frame_log = {}, .trace = file}).add(frame_at(0).made); }
     const auto events = nlohmann::json::parse(std::ifstream(file));
     const auto start = [&](const char* name) {
         const auto found = std::ranges::find_if(
@@ -176,11 +176,11 @@ TEST_F(Timing, StagesOnTheDeviceStandOneAfterTheOther) {
 }
 
 TEST_F(Timing, MemoryIsBounded) {
-    constexpr std::size_t kTooMany = 4 * Recorder::kMaxWaiting;
+    constexpr std::size_t kTooMany = 4 * TimingRecorder::kMaxWaiting;
     const auto file = folder_ / "frames.jsonl";
     std::uint64_t lost = 0;
     {
-        Recorder recorder({.frame_log = file, .trace = {}});
+        TimingRecorder recorder({.frame_log = file, .trace = {}});
         for (std::size_t id = 1; id <= kTooMany; ++id) {
             recorder.add(frame_at(id));
         }
@@ -200,7 +200,7 @@ TEST_F(Timing, NamesSayTheForm) {
 }
 
 TEST_F(Timing, AFileThatCannotBeCreatedIsTheUsersProblem) {
-    EXPECT_THROW(Recorder({.frame_log = folder_ / "no" / "such.csv", .trace = {}}), UserError);
+    EXPECT_THROW(TimingRecorder({.frame_log = folder_ / "no" / "such.csv", .trace = {}}), UserError);
 }
 
 TEST_F(Timing, OtherClocksAreMappedAndLiesAreUnknown) {

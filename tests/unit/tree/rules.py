@@ -5,20 +5,54 @@ Each check takes lines of text and returns problems, one string per problem, so 
 """
 import re
 
-# Folder -> folders of core that it may include, besides itself. Completed transitively from the arrows of
-# docs/architecture.md: base <- lightfield <- {image, codec}; base <- gpu; {gpu, image, lightfield, codec} <- scene;
-# {gpu, scene, lightfield} <- render; {lightfield, codec} <- wire; image <- report.
-CORE = {
+# Folder -> folders of its part that it may include, besides itself; docs/architecture.md draws this. The longest prefix
+# of a path counts: core/render/views is a room of its own, and all of core/wire is one.
+FOLDERS = {
     "core/base": set(),
     "core/lightfield": {"core/base"},
     "core/timing": {"core/base", "core/lightfield"},
     "core/image": {"core/base", "core/lightfield"},
-    "core/report": {"core/base", "core/lightfield", "core/image"},
     "core/codec": {"core/base", "core/lightfield"},
     "core/gpu": {"core/base"},
-    "core/scene": {"core/base", "core/lightfield", "core/image", "core/codec", "core/gpu"},
-    "core/render": {"core/base", "core/lightfield", "core/gpu", "core/scene"},
+    "core/scene": {"core/base", "core/lightfield", "core/image", "core/codec", "core/gpu", "core/scene/gltf"},
+    "core/scene/gltf": {"core/base", "core/lightfield", "core/image", "core/codec", "core/scene"},
+    "core/render": {"core/base", "core/lightfield", "core/gpu", "core/scene", "core/render/source", "core/render/views"},
+    "core/render/denoise": {"core/base", "core/lightfield", "core/gpu", "core/scene", "core/render"},
+    "core/render/source": {"core/base", "core/lightfield", "core/gpu", "core/scene", "core/render", "core/render/denoise"},
+    "core/render/views": {"core/base", "core/lightfield", "core/gpu", "core/scene", "core/render", "core/render/denoise",
+                          "core/render/source"},
+    "core/render/warp": {"core/base", "core/lightfield", "core/gpu", "core/scene", "core/render", "core/render/source",
+                         "core/render/views"},
     "core/wire": {"core/base", "core/lightfield", "core/codec"},
+    "server/access": set(),
+    "server/feed": set(),
+    "server/listener": set(),
+    "server/metrics": set(),
+    "server/camera": {"server/feed", "server/metrics"},
+    "server/recording": {"server/feed", "server/metrics"},
+    "server/session": {"server/feed"},
+    "server/web": {"server/access"},
+    "server/service": {"server/access", "server/feed", "server/listener", "server/metrics", "server/session"},
+    "server/channel": {"server/camera", "server/feed", "server/metrics", "server/recording"},
+    "server/config": {"server/access", "server/channel", "server/feed", "server/service", "server/session"},
+    "server/command_line": {"server/access", "server/channel", "server/config", "server/service"},
+    "client/net": set(),
+    "client/play": {"client/net"},
+    "client/load": {"client/net"},
+    "bench": {"bench/fanout", "bench/pages", "bench/quality", "bench/speed"},
+    "bench/fanout": {"bench"},
+    "bench/pages": {"bench"},
+    "bench/quality": {"bench", "bench/pages"},
+    "bench/speed": {"bench", "bench/fanout", "bench/pages"},
+    "report": set(),
+}
+# Part of the tree -> parts that it may include. Within core, FOLDERS says which folders.
+PARTS = {
+    "core": set(),
+    "report": {"core"},
+    "server": {"core"},
+    "client": {"core", "report"},
+    "bench": {"core", "report"},
 }
 SHADER_USERS = ("core/scene", "core/render", "core/gpu", "bench")  # structs shared with GLSL, compiled kernels
 
@@ -32,7 +66,7 @@ LIBRARIES = {
     "webp/": ("core/image",),
     "zlib": ("core/image",),
     "tiny_gltf": ("core/scene",),
-    "nlohmann/": ("core/scene", "bench", "server/ops", "client"),
+    "nlohmann/": ("core/scene", "bench", "server/command_line", "client"),
     "embree": ("core/scene", "bench"),
     "meshoptimizer": ("core/scene",),
     "boost/": ("server/web",),
@@ -42,10 +76,7 @@ LIBRARIES = {
     "grpc": ("server/service", "client/net", "bench/fanout"),
     "fieldcast/v1/": ("core/wire", "server/recording", "server/session", "server/service", "client/net", "bench/fanout"),
     "google/protobuf/": ("core/wire", "server/recording", "server/service", "client/net"),
-    "nats": ("server/bus",),
-    "prometheus/": ("server/ops",),
-    "GLFW/": ("client/sink",),
-    "CLI/": ("server/", "server/ops", "client/", "bench/"),  # programs and their flags
+    "CLI/": ("server/", "server/command_line", "client/", "bench"),  # programs and their flags
 }
 
 TABLE_ROW = re.compile(r"\s+\{.*\},?$")
@@ -78,18 +109,54 @@ def is_inside(path, folder):
     return path.rpartition("/")[0] + "/" == folder if folder.endswith("/") else path.startswith(folder + "/")
 
 
+def room_of(path):
+    """core/render/views/a.h -> core/render/views; server/main.cpp -> server, where programs may include everything."""
+    folder = path.rpartition("/")[0]
+    while folder not in FOLDERS and "/" in folder:
+        folder = folder.rpartition("/")[0]
+    return folder
+
+
 def direction_problem(path, target):
     """`target` is an include path that starts at the root of the tree."""
-    top, target_top = path.split("/")[0], target.split("/")[0]
-    folder, target_folder = folder_of(path), folder_of(target)
-    if target_top == "core":
-        if top == "core" and folder != target_folder and target_folder not in CORE.get(folder, set()):
-            return f"{folder} may not include {target_folder}"
-    elif target_top in ("server", "client", "bench") and target_top != top:
-        return f"{top} may not include {target_top}"
-    elif target_top == "shaders" and not any(is_inside(path, user) for user in SHADER_USERS):
-        return f"{folder} may not include shaders"
+    part, target_part = path.split("/")[0], target.split("/")[0]
+    room, target_room = room_of(path), room_of(target)
+    if part in PARTS and target_part in PARTS and part != target_part:
+        return None if target_part in PARTS[part] else f"{part} may not include {target_part}"
+    if part == target_part and room != target_room and room in FOLDERS and target_room not in FOLDERS[room]:
+        return f"{room} may not include {target_room}"
+    if target_part == "shaders" and not any(is_inside(path, user) for user in SHADER_USERS):
+        return f"{folder_of(path)} may not include shaders"
     return None
+
+
+def units(files):
+    """`files`: path -> lines. A unit is a header with its source; unit -> units that either of them includes."""
+    found = {path.rpartition(".")[0]: set() for path in files}
+    for path, lines in files.items():
+        unit = path.rpartition(".")[0]
+        targets = (match.group(1).rpartition(".")[0] for match in map(INCLUDE.match, lines) if match)
+        found[unit].update(target for target in targets if target in found and target != unit)
+    return found
+
+
+def reachable(graph, start):
+    seen, ahead = set(), list(graph[start])
+    while ahead:
+        unit = ahead.pop()
+        if unit not in seen:
+            seen.add(unit)
+            ahead.extend(graph[unit])
+    return seen
+
+
+def cycle_problems(files):
+    """Units that include each other in a circle can neither be read nor tested one by one."""
+    graph = units(files)
+    reached = {unit: reachable(graph, unit) for unit in graph}
+    circles = {frozenset({unit} | {other for other in reached[unit] if unit in reached[other]})
+               for unit in graph if unit in reached[unit]}
+    return ["these include each other: " + ", ".join(sorted(circle)) for circle in circles]
 
 
 def include_problems(path, lines):

@@ -5,7 +5,7 @@ import unittest
 
 import rules
 
-CXX_FOLDERS = ("core", "server", "client", "bench")
+CXX_FOLDERS = ("core", "report", "server", "client", "bench")
 ALL_FOLDERS = CXX_FOLDERS + ("tests", "shaders", "proto", "cmake")
 SOURCES = {".h", ".cpp", ".comp", ".glsl", ".proto", ".py", ".cmake"}
 LICENSED_NAMES = {"CMakeLists.txt"}
@@ -33,6 +33,19 @@ class Tree(unittest.TestCase):
 
     def test_includes_follow_the_arrows(self):
         self.expect_none([p for path, lines in cxx_files(CXX_FOLDERS) for p in rules.include_problems(path, lines)])
+
+    def test_every_folder_has_its_place(self):
+        rooms = {rules.room_of(path) for path, _ in cxx_files(CXX_FOLDERS) if path.endswith((".h", ".cpp"))}
+        programs = {"server", "client"}
+        self.assertEqual(set(rules.FOLDERS), rooms - programs, "FOLDERS lists the folders that there are")
+
+    def test_units_do_not_include_each_other(self):
+        self.expect_none(rules.cycle_problems(dict(cxx_files(CXX_FOLDERS))))
+
+    def test_libraries_are_used(self):
+        targets = {match.group(1) for _, lines in cxx_files(CXX_FOLDERS)
+                   for match in map(rules.INCLUDE.match, lines) if match}
+        self.assertEqual([], [start for start in rules.LIBRARIES if not any(t.startswith(start) for t in targets)])
 
     def test_names_say_something(self):
         self.expect_none([p for path, _ in files(ALL_FOLDERS) for p in rules.name_problems(path)])
@@ -74,23 +87,40 @@ class Rules(unittest.TestCase):
         self.assertEqual([], self.includes("core/image/quilt.h", "core/base/error.h"))
         self.assertEqual([], self.includes("core/image/quilt.cpp", "core/image/quilt.h"))
         self.assertEqual([], self.includes("server/main.cpp", "core/render/views/grid_renderer.h"))
-        self.assertEqual([], self.includes("client/play/play.cpp", "client/sink/sink.h"))
+        self.assertEqual([], self.includes("client/play/play.cpp", "client/net/client_session.h"))
+        self.assertEqual([], self.includes("bench/pages/page.cpp", "report/chart.h"))
+        self.assertEqual([], self.includes("server/config/a.cpp", "server/channel/settings.h"))
+        self.assertTrue(self.includes("server/channel/a.cpp", "server/config/config.h"))
+        self.assertTrue(self.includes("server/session/a.cpp", "server/service/grpc_server.h"))
+        self.assertTrue(self.includes("client/net/a.cpp", "client/play/play.h"))
+        self.assertTrue(self.includes("core/scene/gltf/a.cpp", "core/render/kernels.h"))
+        self.assertTrue(self.includes("core/render/denoise/a.cpp", "core/render/views/reflections.h"))
+        self.assertTrue(self.includes("server/session/a.cpp", "report/chart.h"))
         self.assertIn("core/gpu may not include core/lightfield",
                       self.includes("core/gpu/buffer.h", "core/lightfield/camera.h")[0])
         self.assertTrue(self.includes("core/image/quilt.h", "core/codec/plane_codec.h"))
         self.assertTrue(self.includes("core/render/pass.h", "core/wire/chunks.h"))
-        self.assertTrue(self.includes("core/base/log.h", "server/ops/config.h"))
-        self.assertTrue(self.includes("server/main.cpp", "client/net/session.h"))
+        self.assertTrue(self.includes("core/base/log.h", "server/config/config.h"))
+        self.assertTrue(self.includes("server/main.cpp", "client/net/client_session.h"))
         self.assertTrue(self.includes("client/main.cpp", "server/session/mailbox.h"))
         self.assertTrue(self.includes("server/session/a.h", "shaders/shared/scene.h"))
         self.assertTrue(self.includes("core/image/quilt.cpp", "../base/log.h"))
+
+    def test_cycles(self):
+        def problems(**includes):
+            return rules.cycle_problems({f"core/{name.replace('_', '.')}": [f'#include "core/{t}"' for t in targets]
+                                         for name, targets in includes.items()})
+        self.assertEqual([], problems(a_cpp=["a.h", "b.h"], a_h=[], b_h=[]))
+        self.assertEqual(["these include each other: core/a, core/b"],
+                         problems(a_cpp=["a.h", "b.h"], a_h=[], b_h=["a.h"], c_h=["a.h"]))
+        self.assertEqual(1, len(problems(a_h=["b.h"], b_h=["c.h"], c_cpp=["a.h"], c_h=[])))
 
     def test_libraries(self):
         self.assertEqual([], self.includes("core/gpu/device.h", "vulkan/vulkan.h"))
         self.assertTrue(self.includes("core/render/pass.cpp", "vulkan/vulkan.h"))
         self.assertEqual([], self.includes("server/main.cpp", "CLI/CLI.hpp"))
         self.assertTrue(self.includes("server/session/mailbox.cpp", "CLI/CLI.hpp"))
-        self.assertEqual([], self.includes("client/net/session.cpp", "grpcpp/grpcpp.h"))
+        self.assertEqual([], self.includes("client/net/client_session.cpp", "grpcpp/grpcpp.h"))
         self.assertTrue(self.includes("core/wire/chunks.cpp", "grpcpp/grpcpp.h"))
         self.assertEqual([], self.includes("server/web/endpoint.cpp", "boost/asio/write.hpp"))
         self.assertTrue(self.includes("server/metrics/page.cpp", "boost/asio/write.hpp"))
