@@ -127,7 +127,7 @@ if __name__ == "__main__":
     run_where_scikit_image_is()
     import numpy
 
-    sys.path.insert(0, str(ROOT / "bench"))
+    sys.path.insert(0, str(ROOT / "bench" / "quality"))
     import flip
 
     Metrics.program = str(pathlib.Path(sys.argv.pop(1)).resolve())
