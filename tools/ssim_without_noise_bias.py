@@ -18,7 +18,7 @@ import sys
 
 import numpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "bench"))
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "bench" / "quality"))
 import flip
 
 LUMINANCE = numpy.array([0.2126, 0.7152, 0.0722])
