@@ -5,11 +5,13 @@
 #include "server/recording/record.h"
 #include "server/session/server_session.h"
 #include "tests/fuzz/input.h"
-#include "tests/scene/gltf_builder.h"
+#include "tests/scene/draco_builder.h"
 #include "tests/server/synthetic.h"
 #include "tests/server/synthetic_recording.h"
 
+#include <draco/compression/config/compression_shared.h>
 #include <fstream>
+#include <tuple>
 
 namespace {
 
@@ -189,6 +191,14 @@ void write_scenes(const fs::path& folder) {
     scene::GltfBuilder triangle;
     triangle.add_triangle();
     write(folder / "gltf/triangle.glb", fuzz::as_text(triangle.glb()));
+    const auto sheet = scene::draco_mesh(scene::draco_sheet(2));
+    for (const auto& [name, method, speed] : {std::tuple("draco_valence.glb", draco::MESH_EDGEBREAKER_ENCODING, 0),
+                                              std::tuple("draco_edgebreaker.glb", draco::MESH_EDGEBREAKER_ENCODING, 5),
+                                              std::tuple("draco_sequential.glb", draco::MESH_SEQUENTIAL_ENCODING, 5)}) {
+        const scene::DracoBuilder compressed(scene::draco_encode(*sheet, method, speed));
+        static_cast<void>(compressed.load());
+        write(folder / "gltf" / name, fuzz::as_text(compressed.glb()));
+    }
 
     const scene::TempFolder files;
     triangle.add("materials", {{"normalTexture", {{"index", 0}}}});

@@ -66,7 +66,7 @@ const std::map<std::string, std::string> kExpected{
     {"primitive_two_corners.gltf", "mesh 0: primitive 0: 2 corners do not form triangles"},
     {"primitive_without_attributes.gltf", "json: 'attributes' property is missing"},
     {"primitive_without_position.gltf", "mesh 0: primitive 0: has no POSITION"},
-    {"required_draco.gltf", "extensionsRequired: extension 'KHR_draco_mesh_compression' is not supported"},
+    {"required_gpu_instancing.gltf", "extensionsRequired: extension 'EXT_mesh_gpu_instancing' is not supported"},
     {"required_extension.gltf", "extensionsRequired: extension 'VENDOR_unheard_of' is not supported"},
     {"root_is_a_list.gltf", "json: the root is not an object"},
     {"scene_missing.gltf", "json: scene 2 does not exist"},

@@ -111,6 +111,13 @@ std::vector<std::uint32_t> GltfAccessors::read_indices(int accessor, const std::
 template <class T> std::vector<T> GltfAccessors::read(int accessor, const std::string& object) {
     const tinygltf::Accessor& source = entry(accessor);
     const std::uint64_t components = component_count(source);
+    const std::uint64_t packed = *component_bytes(source.componentType) * components;
+    if (const auto found = decoded_.find(accessor); found != decoded_.end()) {
+        std::vector<T> values(source.count * components);
+        copy_elements(Elements{found->second, packed, source.count, components, source.normalized},
+                      source.componentType, values.data());
+        return values;
+    }
     if (source.bufferView < 0 && source.count > kMaxUnbackedElements) {
         document_.refuse(accessor_name(object, accessor),
                          "has more than " + std::to_string(kMaxUnbackedElements) + " elements but no buffer view");
@@ -118,7 +125,6 @@ template <class T> std::vector<T> GltfAccessors::read(int accessor, const std::s
     std::vector<T> values(source.count * components);
     if (source.bufferView >= 0) {
         const auto& view = document_.model.bufferViews[static_cast<std::size_t>(source.bufferView)];
-        const std::uint64_t packed = *component_bytes(source.componentType) * components;
         const Elements elements{views_.bytes(source.bufferView).subspan(source.byteOffset),
                                 view.byteStride == 0 ? packed : view.byteStride, source.count, components,
                                 source.normalized};

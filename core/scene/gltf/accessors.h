@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fieldcast::scene {
@@ -18,6 +20,10 @@ public:
 
     std::uint64_t count(int accessor) const { return entry(accessor).count; }
     int components(int accessor) const;
+
+    /// Uses `decoded` in place of the buffer views of these accessors: packed elements, as many as the accessor has.
+    /// Replaces earlier ones; an empty map ends the substitution.
+    void substitute(std::map<int, std::vector<std::byte>> decoded) { decoded_ = std::move(decoded); }
 
     /// Values in file order, `components` per element. Refuses accessors with another number of components.
     std::vector<float> read_floats(int accessor, int components, const std::string& object);
@@ -42,6 +48,7 @@ private:
 
     const GltfDocument& document_;
     GltfBufferViews& views_;
+    std::map<int, std::vector<std::byte>> decoded_;
 };
 
 } // namespace fieldcast::scene

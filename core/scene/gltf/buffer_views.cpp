@@ -118,6 +118,13 @@ std::span<const std::byte> GltfBufferViews::bytes(int view) {
     return buffer.bytes.subspan(entry.byteOffset, entry.byteLength);
 }
 
+void GltfBufferViews::take_bytes(std::uint64_t size, const std::string& object) {
+    if (size > bytes_left_) {
+        document_.refuse(object, "decompressed data exceeds the limit on the size of all files; use a simpler scene");
+    }
+    bytes_left_ -= size;
+}
+
 std::span<const std::byte> GltfBufferViews::decoded_bytes(int view) {
     if (const auto found = decoded_.find(view); found != decoded_.end()) {
         return found->second;
@@ -126,10 +133,7 @@ std::span<const std::byte> GltfBufferViews::decoded_bytes(int view) {
     const std::string object = object_name("bufferView", static_cast<std::size_t>(view), entry.name);
     const Compression compression = read_compression(document_, entry.extensions.at(kExtension), object);
     check_compression(document_, compression, entry.byteLength, object);
-    if (entry.byteLength > bytes_left_) {
-        document_.refuse(object, "decompressed data exceeds the limit on the size of all files; use a simpler scene");
-    }
-    bytes_left_ -= entry.byteLength;
+    take_bytes(entry.byteLength, object);
     std::vector<std::byte> out(entry.byteLength);
     if (decode(compression, out) != 0) {
         document_.refuse(object, "compressed data is broken; export the file again");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <span>
 
 namespace fieldcast::scene {
 
@@ -16,6 +17,12 @@ using nlohmann::json;
 std::string text_member(const json& object, const char* key) {
     const auto found = object.find(key);
     return found == object.end() ? std::string() : found->get<std::string>();
+}
+
+/// Entries of a list; none if the object has no such member.
+std::span<json> member_list(json& object, const char* key) {
+    const auto found = object.find(key);
+    return found == object.end() ? std::span<json>() : std::span<json>(found->get_ref<json::array_t&>());
 }
 
 json take_member(json& object, const char* key) {
@@ -128,6 +135,7 @@ private:
     void parse_model(json root) {
         document_.skin_count = take_member(root, "skins").size();
         drop_channels_without_node(root);
+        const std::vector<int> indices = take_indices(root);
         const std::string text = root.dump();
         root.clear();
         std::string error;
@@ -144,6 +152,26 @@ private:
             std::replace(error.begin(), error.end(), '\n', ' ');
             document_.refuse("json", error.empty() ? "cannot be parsed as glTF 2.0" : error);
         }
+        auto next = indices.begin();
+        for (tinygltf::Mesh& mesh : document_.model.meshes) {
+            for (tinygltf::Primitive& primitive : mesh.primitives) {
+                primitive.indices = *next++;
+            }
+        }
+        FC_ASSERT(next == indices.end(), "tinygltf reads all primitives or reports an error");
+    }
+
+    /// Removes the `indices` of all primitives and returns them in order; −1: none. tinygltf refuses indices whose
+    /// accessor has no buffer view, but those of compressed primitives have none.
+    static std::vector<int> take_indices(json& root) {
+        std::vector<int> indices;
+        for (json& mesh : member_list(root, "meshes")) {
+            for (json& primitive : member_list(mesh, "primitives")) {
+                indices.push_back(primitive.value("indices", -1));
+                primitive.erase("indices");
+            }
+        }
+        return indices;
     }
 
     /// Removes animation channels without target node. They are legal, but have no meaning without an extension.

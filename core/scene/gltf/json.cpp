@@ -21,10 +21,9 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67;  // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A; // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;  // "BIN\0"
 
-constexpr std::array<std::string_view, 7> kSupportedExtensions{
-    "EXT_meshopt_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-    "KHR_materials_ior",       "KHR_mesh_quantization", "KHR_materials_transmission",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 8> kSupportedExtensions{
+    "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_ior",       "KHR_materials_transmission", "KHR_mesh_quantization", "KHR_texture_transform"};
 
 std::uint32_t u32_at(std::span<const std::byte> bytes, std::size_t offset) {
     std::uint32_t value = 0;

@@ -48,7 +48,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     GltfAccessors accessors(document, views);
     GltfNodes nodes = read_nodes(document);
     GltfSurfaces surfaces = read_surfaces(document);
-    GltfMeshes meshes = read_meshes(document, accessors, nodes, options.limits);
+    GltfMeshes meshes = read_meshes(document, views, accessors, nodes, options.limits);
 
     Scene scene;
     scene.name = document.name;

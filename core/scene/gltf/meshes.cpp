@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/gltf/meshes.h"
 
+#include "core/scene/gltf/draco.h"
 #include "core/scene/gltf/numbers.h"
 #include "core/scene/mesh_normals.h"
 
@@ -20,8 +21,8 @@ struct MeshRange {
 
 class MeshReader {
 public:
-    MeshReader(GltfDocument& document, GltfAccessors& accessors, const SceneLimits& limits)
-        : document_(document), accessors_(accessors), limits_(limits) {}
+    MeshReader(GltfDocument& document, GltfBufferViews& views, GltfAccessors& accessors, const SceneLimits& limits)
+        : document_(document), views_(views), accessors_(accessors), limits_(limits) {}
 
     GltfMeshes read(const GltfNodes& nodes) {
         for (std::size_t i = 0; i < nodes.nodes.size(); ++i) {
@@ -74,7 +75,12 @@ private:
             document_.refuse(object, "has no POSITION, which every primitive needs");
         }
         const std::uint64_t vertex_count = accessors_.count(position->second);
-        reserve_budget(primitive, vertex_count, object);
+        std::vector<std::uint32_t> corners; // of separate triangles, if the primitive is compressed
+        if (is_draco(primitive)) {
+            corners = decompress(primitive, vertex_count, object);
+        } else {
+            reserve_budget(triangle_bound(primitive, vertex_count), vertex_count, object);
+        }
         Mesh mesh;
         mesh.material = primitive.material >= 0 ? static_cast<std::uint32_t>(primitive.material)
                                                 : static_cast<std::uint32_t>(document_.model.materials.size());
@@ -84,7 +90,11 @@ private:
         mesh.uv0 = read_coordinates(primitive, "TEXCOORD_0", vertex_count, object);
         mesh.uv1 = read_coordinates(primitive, "TEXCOORD_1", vertex_count, object);
         mesh.colours = read_colours(primitive, vertex_count, object);
-        mesh.triangles = read_triangles(primitive, vertex_count, object);
+        mesh.triangles =
+            is_draco(primitive)
+                ? triangles_of(TINYGLTF_MODE_TRIANGLES, corners, vertex_count, object)
+                : triangles_of(primitive.mode, read_corners(primitive, vertex_count, object), vertex_count, object);
+        accessors_.substitute({});
         if (mesh.normals.empty()) {
             mesh.tangents.clear(); // glTF: without normals, tangents must be ignored
             make_flat_normals(mesh);
@@ -96,10 +106,25 @@ private:
         return mesh;
     }
 
-    /// Counts triangles and vertices before they are allocated, because many primitives may share the same few bytes.
-    void reserve_budget(const tinygltf::Primitive& primitive, std::uint64_t vertex_count, const std::string& object) {
+    std::uint64_t triangle_bound(const tinygltf::Primitive& primitive, std::uint64_t vertex_count) const {
         const std::uint64_t corners = primitive.indices >= 0 ? accessors_.count(primitive.indices) : vertex_count;
-        triangle_count_ += primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
+        return primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
+    }
+
+    /// Makes the accessors of a compressed primitive return its decoded attributes. Returns its triangles' corners.
+    std::vector<std::uint32_t> decompress(const tinygltf::Primitive& primitive, std::uint64_t vertex_count,
+                                          const std::string& object) {
+        reserve_budget(0, vertex_count, object);
+        DracoPrimitive decoded =
+            read_draco(document_, views_, primitive, limits_.max_triangles - triangle_count_, object);
+        reserve_budget(decoded.corners.size() / 3, 0, object);
+        accessors_.substitute(std::move(decoded.accessors));
+        return std::move(decoded.corners);
+    }
+
+    /// Counts triangles and vertices before they are allocated, because many primitives may share the same few bytes.
+    void reserve_budget(std::uint64_t triangle_count, std::uint64_t vertex_count, const std::string& object) {
+        triangle_count_ += triangle_count;
         vertex_count_ += vertex_count;
         if (triangle_count_ > limits_.max_triangles || vertex_count_ / 3 > limits_.max_triangles) {
             document_.refuse(object, "brings the scene to more than " + std::to_string(limits_.max_triangles) +
@@ -150,26 +175,24 @@ private:
         return colours;
     }
 
-    std::vector<glm::uvec3> read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertex_count,
-                                           const std::string& object) {
-        std::vector<std::uint32_t> corners;
+    std::vector<std::uint32_t> read_corners(const tinygltf::Primitive& primitive, std::uint64_t vertex_count,
+                                            const std::string& object) {
         if (primitive.indices >= 0) {
-            corners = accessors_.read_indices(primitive.indices, object + ": indices");
-        } else {
-            corners.resize(vertex_count);
-            std::iota(corners.begin(), corners.end(), 0U);
+            return accessors_.read_indices(primitive.indices, object + ": indices");
         }
+        std::vector<std::uint32_t> corners(vertex_count);
+        std::iota(corners.begin(), corners.end(), 0U);
+        return corners;
+    }
+
+    std::vector<glm::uvec3> triangles_of(int mode, const std::vector<std::uint32_t>& corners,
+                                         std::uint64_t vertex_count, const std::string& object) const {
         const auto bad =
             std::find_if(corners.begin(), corners.end(), [&](std::uint32_t corner) { return corner >= vertex_count; });
         if (bad != corners.end()) {
             document_.refuse(object, "index " + std::to_string(*bad) + " is beyond its " +
                                          std::to_string(vertex_count) + " vertices");
         }
-        return triangles_of(primitive.mode, corners, object);
-    }
-
-    std::vector<glm::uvec3> triangles_of(int mode, const std::vector<std::uint32_t>& corners,
-                                         const std::string& object) const {
         const bool is_list = mode == TINYGLTF_MODE_TRIANGLES;
         if (corners.size() < 3 || (is_list && corners.size() % 3 != 0)) {
             document_.refuse(object, std::to_string(corners.size()) + " corners do not form triangles; a list needs a "
@@ -189,6 +212,7 @@ private:
     }
 
     GltfDocument& document_;
+    GltfBufferViews& views_;
     GltfAccessors& accessors_;
     const SceneLimits limits_;
     GltfMeshes result_;
@@ -199,9 +223,9 @@ private:
 
 } // namespace
 
-GltfMeshes read_meshes(GltfDocument& document, GltfAccessors& accessors, const GltfNodes& nodes,
+GltfMeshes read_meshes(GltfDocument& document, GltfBufferViews& views, GltfAccessors& accessors, const GltfNodes& nodes,
                        const SceneLimits& limits) {
-    return MeshReader(document, accessors, limits).read(nodes);
+    return MeshReader(document, views, accessors, limits).read(nodes);
 }
 
 } // namespace fieldcast::scene

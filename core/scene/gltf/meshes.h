@@ -14,7 +14,7 @@ struct GltfMeshes {
 };
 
 /// Reads the meshes that nodes show, and their instances. Throws UserError, before allocating if a limit is exceeded.
-GltfMeshes read_meshes(GltfDocument& document, GltfAccessors& accessors, const GltfNodes& nodes,
+GltfMeshes read_meshes(GltfDocument& document, GltfBufferViews& views, GltfAccessors& accessors, const GltfNodes& nodes,
                        const SceneLimits& limits);
 
 } // namespace fieldcast::scene

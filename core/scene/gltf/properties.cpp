@@ -232,6 +232,9 @@ private:
 
     static std::optional<Kind> kind_of(const std::string& key, const json& member, const Place& place) {
         const std::string_view parent = place.parent->key;
+        if (parent == "extensions") {
+            return Kind::kObject;
+        }
         if (key == "nodes" && place.parent->parent != nullptr) {
             return Kind::kIndexList; // nodes of a scene, not the list of all nodes
         }

@@ -2,6 +2,8 @@
 // Checks every index and range of a glTF file, because tinygltf checks none of them.
 #include "core/scene/gltf/document.h"
 
+#include "core/scene/gltf/draco.h"
+
 #include <concepts>
 #include <optional>
 
@@ -132,6 +134,30 @@ private:
             if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
                 document_.refuse(name, "unknown mode " + std::to_string(primitive.mode) + "; expected 0 to 6");
             }
+            check_draco(primitive, name);
+        }
+    }
+
+    /// Members of KHR_draco_mesh_compression have the right types, as the checks of the JSON ensure, if they exist.
+    void check_draco(const tinygltf::Primitive& primitive, const std::string& object) const {
+        if (!is_draco(primitive)) {
+            return;
+        }
+        const tinygltf::Value& extension = primitive.extensions.at(kDracoExtension);
+        if (!extension.Has("bufferView") || !extension.Has("attributes")) {
+            document_.refuse(object, std::string(kDracoExtension) + " needs a bufferView and attributes");
+        }
+        check_index(extension.Get("bufferView").GetNumberAsInt(), model_.bufferViews.size(), object,
+                    "compressed bufferView");
+        for (const std::string& attribute : extension.Get("attributes").Keys()) {
+            if (!primitive.attributes.contains(attribute)) {
+                document_.refuse(object, "compressed attribute '" + attribute.substr(0, 60) +
+                                             "' is not an attribute of the primitive; each must be one");
+            }
+        }
+        if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP) {
+            document_.refuse(object, "compressed primitive has mode " + std::to_string(primitive.mode) +
+                                         "; expected 4 or 5, triangles or a strip");
         }
     }
 

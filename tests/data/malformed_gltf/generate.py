@@ -165,7 +165,7 @@ def write_values():
     write("nan_position.gltf", valid(POSITIONS[:12] + struct.pack("<f", float("nan")) + POSITIONS[16:] + NORMALS + INDICES))
     write("infinite_normal.gltf", valid(POSITIONS + struct.pack("<f", float("inf")) + NORMALS[4:] + INDICES))
     change("required_extension.gltf", "extensionsRequired", ["VENDOR_unheard_of"])
-    change("required_draco.gltf", "extensionsRequired", ["KHR_lights_punctual", "KHR_draco_mesh_compression"])
+    change("required_gpu_instancing.gltf", "extensionsRequired", ["KHR_lights_punctual", "EXT_mesh_gpu_instancing"])
 
 
 def write_uris():

@@ -69,6 +69,7 @@ LIBRARIES = {
     "nlohmann/": ("core/scene", "bench", "server/command_line", "client"),
     "embree": ("core/scene", "bench"),
     "meshoptimizer": ("core/scene",),
+    "draco/": ("core/scene",),
     "boost/": ("server/web",),
     "openssl/": ("core/scene", "server/access", "server/listener"),
     "toml": ("core/base",),
