@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestPause{500}; ///< without a jump of the scene
+constexpr std::chrono::milliseconds kLongestPause{500}; ///< longer pauses make the scene jump
 
 /// Sleeps until `time`, or until stopped.
 void wait_until(Clock::time_point time, const std::stop_token& stop) {
@@ -27,7 +27,7 @@ void wait_until(Clock::time_point time, const std::stop_token& stop) {
     never.wait_until(lock, stop, time, [] { return false; });
 }
 
-/// Sleeps until a frame may follow that of `begin`, or until stopped. The rate may change meanwhile.
+/// Sleeps until a frame may follow the one begun at `begin`, or until stopped. The rate may change meanwhile.
 void wait_for_next_frame(const feed::Feed& feed, Clock::time_point begin, const std::stop_token& stop) {
     constexpr std::chrono::milliseconds kLook{100};
     auto due = begin + feed::frame_interval(feed.frames_per_second());
@@ -42,7 +42,7 @@ feed::ChannelInfo with_memory(feed::ChannelInfo info, std::shared_ptr<feed::View
     return info;
 }
 
-/// Whether nothing works on it any more.
+/// Whether all work on it has ended.
 bool is_lost(const gpu::Device& device) {
     try {
         gpu::CommandRecorder recorder(device);
@@ -71,7 +71,7 @@ Channel::Channel(const Shared& shared, const SettledChannel& settled, Client cli
       render_thread_([this](const std::stop_token& stop) { run([&] { render_loop(stop); }); }) {}
 
 Channel::~Channel() {
-    render_thread_.request_stop(); // both, before either is joined: each may wait for the other
+    render_thread_.request_stop(); // both before either is joined, because each may wait for the other
     encode_thread_.request_stop();
 }
 
@@ -100,7 +100,7 @@ void Channel::render_loop(const std::stop_token& stop) {
         const auto begin = Clock::now();
         const feed::Demand demand = feed_->demand(begin);
         if (demand.empty() && !demand.is_awaited) {
-            continue; // the last one has just gone
+            continue; // the last subscriber has just left
         }
         std::optional<RenderedFrame> frame = render_in_turn(++frame_id, demand, stop);
         if (!frame) {

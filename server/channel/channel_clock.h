@@ -11,12 +11,12 @@
 
 namespace fieldcast::channel {
 
-/// When a frame shows the scene, and what follows from that.
+/// Scene time of a frame, and the values that depend on it.
 struct FrameMoment {
     std::int64_t scene_time_ns = 0;
     bool cut = false;
     std::uint32_t noise_frame = 0; ///< FrameHeader::noise_frame
-    std::optional<feed::SteeredPose> pose{}; ///< where a client wants the camera
+    std::optional<feed::SteeredPose> pose{}; ///< pose that a steering client requested
 };
 
 /// Scene time of one channel.
@@ -24,13 +24,13 @@ class ChannelClock {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    /// `scene` must outlive it. In real time the scene's time begins at `begin`; without it, with the first frame.
+    /// `scene` must outlive it. In real time, scene time starts at `begin`, or else with the first frame.
     ChannelClock(const Settings& settings, const scene::Scene& scene, std::optional<TimePoint> begin = std::nullopt);
 
-    /// The moment of the next frame, which is rendered at `now`. A cut: the first frame, a loop that starts over.
+    /// The moment of the next frame, which is rendered at `now`. The first frame and the start of a loop are cuts.
     FrameMoment next(TimePoint now);
 
-    /// Nobody was watching for a while: in real time the scene has jumped, so the next frame is a cut.
+    /// Call it after a pause without clients. In real time the scene has jumped, so the next frame is a cut.
     void resume();
 
 private:

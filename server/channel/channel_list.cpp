@@ -72,7 +72,7 @@ void ChannelList::start_channel(const Channel::Shared& shared, const ChannelChoi
     add_feed(open_own_channel(shared, choice, *own_cameras_));
 }
 
-// Half of what is free now that all channels are there: views in memory, frames on their way and others need the rest.
+// Half of the memory that is free once all channels exist. Views in memory, frames in flight and others need the rest.
 void ChannelList::limit_view_memory(const Settings& settings) {
     if (!device_) {
         return;

@@ -13,7 +13,7 @@
 
 namespace fieldcast::channel {
 
-/// All channels of a server, rendered ones and replays, and what records them. Opens a device only if something is
+/// All channels of a server, rendered or replayed, and their recorders. Opens a device only if a channel is
 /// rendered.
 class ChannelList {
 public:
@@ -38,7 +38,7 @@ private:
     std::optional<camera::OwnCameras> own_cameras_;
     std::vector<std::unique_ptr<Channel>> channels_;
     std::vector<std::unique_ptr<recording::Replay>> replays_;
-    std::vector<std::unique_ptr<recording::ChannelRecorder>> recorders_; ///< end before what they record
+    std::vector<std::unique_ptr<recording::ChannelRecorder>> recorders_; ///< last: end before their feeds
 };
 
 } // namespace fieldcast::channel

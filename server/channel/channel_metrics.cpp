@@ -65,7 +65,7 @@ void ChannelMetrics::count_rendered(const RenderedFrame& frame, std::uint64_t in
     asked_views_.add(frame.asked_views);
     for (const RenderedViews& rendered : frame.views) {
         rendered_views_.add(rendered.views.views.size());
-        const auto& times = rendered.views.header.render_times; // the source's, then those of the views
+        const auto& times = rendered.views.header.render_times; // of the source first, then of the views
         for (std::size_t i = frame.header.render_times.size(); i < times.size(); ++i) {
             observe_stage(times[i]);
         }

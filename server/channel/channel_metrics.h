@@ -10,15 +10,15 @@
 
 namespace fieldcast::channel {
 
-/// What one channel counts. For one thread per function; `registry` must outlive it.
+/// Metrics of one channel. Each function may be called by one thread; `registry` must outlive it.
 class ChannelMetrics {
 public:
     ChannelMetrics(metrics::Registry& registry, const std::string& channel);
 
     void count_rendered(const RenderedFrame& frame, std::uint64_t invalid_samples); ///< samples: of this frame
-    /// Of the device, which channels share.
+    /// A turn at the device, which channels share.
     struct Turn {
-        std::chrono::duration<double> waited; ///< until it began
+        std::chrono::duration<double> waited; ///< from the request to its begin
         std::chrono::duration<double> used;
     };
     void observe_turn(const Turn& turn);

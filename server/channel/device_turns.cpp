@@ -25,17 +25,17 @@ DevicePlace::~DevicePlace() {
 
 std::optional<DeviceTurn> DevicePlace::wait(const std::stop_token& stop) {
     const std::stop_callback wake(stop, [this] {
-        { auto turns = turns_.turns_.lock(); } // not between a waiter's test and its sleep
+        { auto turns = turns_.turns_.lock(); } // keeps the wake-up out of the gap between a waiter's test and its sleep
         turns_.changed_.notify_all();
     });
     auto turns = turns_.turns_.lock();
     turns->want(id_);
-    turns_.changed_.notify_all(); // somebody may be patient for us
+    turns_.changed_.notify_all(); // another channel may be waiting for this one to come back
     while (!stop.stop_requested() && !turns->may_begin(id_, Clock::now())) {
         const auto now = Clock::now();
         const auto until = turns->ask_again(id_, now).value_or(now + kUntilSomebodyActs);
         turns.wait_until(turns_.changed_, until, [&, was_woken = false](const FairTurns&) mutable {
-            return std::exchange(was_woken, true); // at the first call it sleeps, then it looks again
+            return std::exchange(was_woken, true); // false at the first call, so that it sleeps; true after a wake-up
         });
     }
     if (stop.stop_requested()) {

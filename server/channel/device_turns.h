@@ -23,7 +23,7 @@ private:
     Guarded<FairTurns> turns_;
 };
 
-/// The device is ours while this lives.
+/// The right to use the device, for as long as this lives.
 class DeviceTurn {
 public:
     DeviceTurn(DeviceTurn&& other) noexcept : turns_(std::exchange(other.turns_, nullptr)), id_(other.id_) {}
@@ -38,7 +38,7 @@ private:
     FairTurns::Id id_;
 };
 
-/// One channel's place among those that share a device. `turns` must outlive it, and it its turns.
+/// The place of one channel among those that share a device. `turns` must outlive it; it must outlive its turns.
 class DevicePlace {
 public:
     explicit DevicePlace(DeviceTurns& turns) : turns_(turns), id_(turns.turns_.lock()->join()) {}

@@ -7,7 +7,7 @@ namespace fieldcast::channel {
 
 namespace {
 
-/// The device idles for who has just let go for at most such a part of what the one who asks is going to use.
+/// The device waits for a previous holder at most 1/8 of the cost of the next turn.
 constexpr int kPatienceDivisor = 8;
 
 } // namespace

@@ -6,16 +6,16 @@
 #include <map>
 #include <optional>
 
-// Who may use the device next, when several channels share it.
+// Chooses the next user of a device that several channels share.
 // Follows: P. Goyal, H. M. Vin, H. Cheng. Start-time Fair Queueing: A Scheduling Algorithm for Integrated Services
 // Packet Switching Networks. SIGCOMM 1996. Section 2.
-// Differs: what a turn costs is known only after it, so its finish tag is; and the device waits a little for who has
-// less and has just let go, as S. Iyer, P. Druschel. Anticipatory Scheduling. SOSP 2001, does for disks: a channel asks
-// for its next turn only after it has handed on the frame of the last one.
+// Differs: a turn's cost, and so its finish tag, is known only after the turn. And the device waits briefly for a
+// previous holder with a lower tag, as disks do in S. Iyer, P. Druschel. Anticipatory Scheduling. SOSP 2001: a channel
+// requests its next turn only after it has handed on the frame of the last one.
 namespace fieldcast::channel {
 
-/// Gives out turns so that everybody who always wants one gets the same time, however long single turns are. Who was
-/// away has saved up nothing. Not thread-safe; `now` must not go backwards.
+/// Grants turns so that members which always want one get equal time, however long single turns are. Time during which
+/// a member wanted no turn earns it nothing. Not thread-safe; `now` must not go backwards.
 class FairTurns {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
@@ -25,14 +25,14 @@ public:
     Id join();
     void leave(Id id);
 
-    /// From now on `id` waits, until `begin` or `give_up`.
+    /// `id` waits from now on, until `begin` or `give_up`.
     void want(Id id);
     void give_up(Id id);
 
     /// Whether `id`, which waits, may begin at `now`.
     bool may_begin(Id id, TimePoint now) const;
 
-    /// When it is worth asking again although nobody has done anything; empty: only then.
+    /// Time at which may_begin() may change by itself; empty: it changes only with another call.
     std::optional<TimePoint> ask_again(Id id, TimePoint now) const;
 
     void begin(Id id, TimePoint now);
@@ -40,17 +40,17 @@ public:
 
 private:
     struct Member {
-        Duration start{};  ///< tag of its next turn: time that it has had, as if it had always been there
+        Duration start{};  ///< tag of its next turn: time used, counted as if it had always been a member
         Duration finish{}; ///< tag of the end of its last turn
         Duration cost{};   ///< of its last turn
-        TimePoint ended{}; ///< the moment of that
+        TimePoint ended{}; ///< end of its last turn
         bool is_waiting = false;
         bool has_turned = false; ///< there was a last turn
     };
 
-    /// Somebody with a lower tag is about to come back: until then.
+    /// Time until which the device waits for a member with a lower tag to come back.
     TimePoint patience_ends(const Member& asking) const;
-    bool is_before(Id id, const Member& member) const; ///< another one that waits is to go first
+    bool is_before(Id id, const Member& member) const; ///< another waiting member goes first
 
     std::map<Id, Member> members_;
     std::optional<Id> running_;

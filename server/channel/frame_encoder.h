@@ -10,8 +10,8 @@
 
 namespace fieldcast::channel {
 
-/// Encodes the frames of one channel, one after the other: every plane and every view once per codec wanted. Keeps the
-/// last key frame, to which strips of later ones refer. Not thread-safe; uses all cores.
+/// Encodes the frames of one channel in order: every plane and every view once per requested codec. Keeps the last
+/// key frame, to which strips of later frames refer. Not thread-safe; uses all cores.
 class FrameEncoder {
 public:
     using TimePoint = KeyFrames::TimePoint;
@@ -20,7 +20,7 @@ public:
     feed::FramePtr encode(RenderedFrame frame, TimePoint now);
 
 private:
-    /// What the planes of `frame` may refer to; views differ by their format.
+    /// The key frame to which planes of `frame` may refer; that of views depends on their format.
     wire::KeyFrame key_for(const RenderedFrame& frame, bool is_key) const;
 
     WorkerPool pool_;

@@ -17,7 +17,7 @@ std::int64_t steady_ns() {
         .count();
 }
 
-/// Those that the source renderer makes.
+/// The semantics in `choices` that the source renderer makes.
 std::vector<PlaneSemantic> source_semantics_of(const std::vector<wire::PlaneChoice>& choices) {
     std::vector<PlaneSemantic> semantics;
     for (const wire::PlaneChoice& choice : choices) {
@@ -30,7 +30,7 @@ std::vector<PlaneSemantic> source_semantics_of(const std::vector<wire::PlaneChoi
     return semantics;
 }
 
-/// Views to render in one batch, and who gets them.
+/// Views to render in one batch, and the formats that they are wanted in.
 struct Batch {
     std::vector<wire::ViewFormat> formats;
     render::ViewRequest request;
@@ -172,7 +172,7 @@ std::vector<RenderedViews> FrameRenderer::render_views(const render::SourcePlane
     return rendered;
 }
 
-// Admission counts what clients want; others may have taken the device's memory since.
+// Admission counts the memory for clients' views, but other programs may have taken device memory since.
 bool FrameRenderer::has_memory_for(const render::ViewRequest& request) const {
     const std::uint64_t missing = grid_renderer_->missing_bytes(render_settings_, request);
     const std::uint64_t free = missing > 0 ? gpu::free_memory_bytes(device_) : 0;
@@ -196,7 +196,7 @@ void FrameRenderer::forget_views(const feed::Demand& kept) {
 std::optional<image::RgbF32> FrameRenderer::path_trace(const FrameMoment& moment, LatticePosition position,
                                                        std::uint32_t samples,
                                                        const std::function<bool(std::uint32_t)>& progress) {
-    constexpr std::uint32_t kBatch = 4; // samples between two questions whether to stop
+    constexpr std::uint32_t kBatch = 4; // samples between two calls of `progress`
     const FrameHeader header = pose(1, moment);
     RenderSettings settings = header.settings;
     settings.indirect_clamp = 0.0F;

@@ -19,7 +19,7 @@
 
 namespace fieldcast::channel {
 
-/// Views of one geometry and size, and the formats in which somebody wants them.
+/// Views of one geometry and size, and the formats that clients want.
 struct RenderedViews {
     std::vector<wire::ViewFormat> formats; ///< differ in their encoding only
     Views views;
@@ -41,14 +41,14 @@ struct RenderedFrame {
     std::chrono::steady_clock::time_point begun{}; ///< as in feed::Demand
 };
 
-/// What a channel settles when it starts: enough for another renderer of the same on the same device.
+/// Values that a channel settles when it starts. They suffice for another renderer of the scene on the same device.
 struct SettledChannel {
     std::shared_ptr<const scene::Scene> scene;
     const scene::CameraNode* camera_node = nullptr; ///< in `scene`
     scene::Traversal traversal = scene::Traversal::kBvh;
     scene::VisibilityMethod visibility = scene::VisibilityMethod::kRays;
-    std::optional<Camera> fixed_camera; ///< where it stands if it does not follow its node
-    RenderSettings settings;            ///< the exposure too
+    std::optional<Camera> fixed_camera; ///< set if the camera does not follow its node
+    RenderSettings settings;            ///< including the exposure
     feed::ChannelInfo info;
 };
 
@@ -60,22 +60,22 @@ public:
     /// Throws UserError if the scene is not usable.
     FrameRenderer(const gpu::Device& device, const Settings& settings, const ChannelChoice& channel);
 
-    /// Shares the scene that is loaded, and has everything on the device for itself. `settled` may come from a renderer
-    /// that has gone.
+    /// Shares the loaded scene, but nothing on the device. `settled` may come from a renderer that no longer
+    /// exists.
     FrameRenderer(const gpu::Device& device, const Settings& settings, const SettledChannel& settled);
 
     SettledChannel settled() const;
     const feed::ChannelInfo& info() const { return info_; }
     const scene::Scene& scene() const { return *scene_; }
 
-    /// Views for which the device has no memory are left out, and that is logged.
+    /// Leaves views out for which the device has no memory, and logs that.
     RenderedFrame render(std::uint64_t frame_id, const FrameMoment& moment, const feed::Demand& demand);
 
-    /// Gives back the memory of all views of other geometries and sizes than those in `kept`.
+    /// Frees the memory of views whose geometry or size is not in `kept`.
     void forget_views(const feed::Demand& kept);
 
-    /// Linear radiance of one view, path traced with `samples` per pixel, nothing reused, no limits. `progress` gets
-    /// the samples so far; true: stop, and the result is empty.
+    /// Linear radiance of one view, path traced with `samples` per pixel, without reuse and limits. `progress` gets
+    /// the number of samples so far; if it returns true, the result is empty.
     std::optional<image::RgbF32> path_trace(const FrameMoment& moment, LatticePosition position, std::uint32_t samples,
                                             const std::function<bool(std::uint32_t)>& progress);
 
@@ -103,7 +103,7 @@ private:
     std::unique_ptr<scene::GpuScene> gpu_scene_;
     std::unique_ptr<render::SourceRenderer> source_renderer_;
     std::unique_ptr<render::GridRenderer> grid_renderer_;
-    std::unique_ptr<render::WarpPlanesRenderer> warp_planes_; ///< null before somebody wants them
+    std::unique_ptr<render::WarpPlanesRenderer> warp_planes_; ///< null until a client wants such planes
     std::optional<Camera> fixed_camera_;
     RenderSettings render_settings_;
     feed::ChannelInfo info_;

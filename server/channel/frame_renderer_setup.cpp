@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of FrameRenderer's first constructor: what is settled once, when a channel starts.
+// The steps of FrameRenderer's first constructor, which settle what stays the same while a channel runs.
 #include "core/base/error.h"
 #include "core/base/log.h"
 #include "core/render/setup.h"
@@ -54,7 +54,7 @@ void FrameRenderer::settle_lattice(const ChannelChoice& choice) {
     info_.lossy_quality = static_cast<std::uint8_t>(settings_.lossy_quality);
 }
 
-// Views that average or denoise their own light need room on the device.
+// Views that average or denoise their own light need device memory.
 void FrameRenderer::limit_views() {
     info_.bytes_per_view_pixel = render::GridRenderer::bytes_per_pixel(render_settings_);
     if (render_settings_.denoised_images == DenoisedImages::kSource && !render_settings_.accumulate_views) {
@@ -95,7 +95,7 @@ void FrameRenderer::settle_guard_band() {
                                      {"extra_percent", choice.extra_share * 100.0}});
 }
 
-// A receiver refuses taller planes.
+// Throws if planes would be taller than receivers accept.
 void FrameRenderer::check_planes(const Camera& source) const {
     FrameHeader header;
     header.source = source;

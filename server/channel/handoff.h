@@ -12,7 +12,7 @@ namespace fieldcast::channel {
 /// Passes items from one thread to another, one at a time: the giver waits until the previous item was taken.
 template <class T> class Handoff {
 public:
-    /// False: stopped, the item is lost.
+    /// False: stopped, and the item is lost.
     bool put(T item, const std::stop_token& stop) {
         std::unique_lock lock(mutex_);
         if (!changed_.wait(lock, stop, [&] { return !item_.has_value(); })) {

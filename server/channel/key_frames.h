@@ -6,8 +6,8 @@
 
 namespace fieldcast::channel {
 
-/// Chooses the key frames that all clients of a channel share: the first frame, then one per second at least, and early
-/// ones for clients that lack the last one and at cuts, at most one per half a second.
+/// Chooses the key frames that all clients of a channel share: the first frame, then at least one per second. Cuts, and
+/// clients that lack the last one, cause early key frames, at most one per half a second.
 class KeyFrames {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;

@@ -26,7 +26,7 @@ feed::Demand whole_grid(const feed::ChannelInfo& info, bool wants_source) {
     return demand;
 }
 
-/// Views come sorted by position; files have them row by row, which is the same for one grid.
+/// Views are sorted by position, which for one grid is the row-by-row order of the files.
 void write(const std::filesystem::path& folder, const ViewGrid& grid, const RenderedFrame& frame,
            const image::LightFieldProducts& products) {
     const image::LightFieldPicture picture{grid, frame.views.front().views, frame.source ? &*frame.source : nullptr};
@@ -69,7 +69,7 @@ bool write_references(FrameRenderer& renderer, const FrameMoment& moment, const 
         views.views.push_back({positions[i], display_plane(*linear, renderer.exposure()), {}});
     }
     image::LightFieldProducts products = job.products;
-    products.source_exr = false; // there is no source
+    products.source_exr = false; // references have no source
     image::write_light_field(job.out, {grid, views, nullptr}, products);
     return true;
 }

@@ -8,12 +8,12 @@
 
 namespace fieldcast::channel {
 
-/// What `fieldcast-server render` makes: files instead of a service.
+/// Work of `fieldcast-server render`, which writes files and does not serve.
 struct OfflineJob {
     std::filesystem::path out = "out";
-    std::uint32_t frame_count = 30;      ///< rendered one after the other, from a cold start
-    bool writes_every_frame = false;     ///< each to a folder of its own; otherwise the last
-    std::uint32_t reference_samples = 0; ///< > 0: views of the last frame path traced with so many, nothing reused
+    std::uint32_t frame_count = 30;      ///< consecutive frames from a cold start
+    bool writes_every_frame = false;     ///< each to a folder of its own; otherwise only the last frame
+    std::uint32_t reference_samples = 0; ///< if > 0, also path traces the last frame's views without reuse
     image::LightFieldProducts products;
 };
 

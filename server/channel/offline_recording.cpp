@@ -11,7 +11,7 @@ bool record_offline(const gpu::Device& device, const Settings& settings, const R
     FrameRenderer renderer(device, settings, settings.channels.front());
     feed::ChannelInfo info = renderer.info();
     feed::Demand demand;
-    demand.needs_alone = true; // clients join anywhere
+    demand.needs_alone = true; // so that clients may join at any frame
     for (const recording::RecordedForm& form : settings.record_forms) {
         info.recorded.push_back(recording::selection_of(form, info));
         feed::add(demand, info.recorded.back());

@@ -6,8 +6,8 @@
 
 namespace fieldcast::channel {
 
-/// Renders the frames of `job` one after the other and writes them to a recording. False: `progress` asked to stop;
-/// what was recorded so far is complete. Throws UserError if the scene is not usable or the file cannot be written.
+/// Renders the frames of `job` in order and writes them to a recording. False: `progress` returned true; the
+/// frames recorded so far are complete. Throws UserError if the scene is not usable or the file cannot be written.
 bool record_offline(const gpu::Device& device, const Settings& settings, const RecordJob& job,
                     const OfflineProgress& progress);
 

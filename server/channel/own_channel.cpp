@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Four views, as many as were rendered when the channel started: their kernels are compiled.
+/// Four views, as at the start of the channel, so that all kernels are compiled already.
 feed::Demand four_views(const feed::ChannelInfo& info) {
     ViewGrid grid = info.largest_grid;
     grid.rows = grid.cols = 2;
@@ -25,7 +25,7 @@ feed::Demand four_views(const feed::ChannelInfo& info) {
     return demand;
 }
 
-/// From two frames; what cameras really cost is seen later.
+/// Estimated from two frames; the actual cost of cameras replaces it later.
 camera::FrameCost measure(FrameRenderer& renderer) {
     std::uint64_t frame_id = 0;
     const auto milliseconds = [&](const feed::Demand& demand) {
@@ -44,7 +44,7 @@ camera::FrameCost measure(FrameRenderer& renderer) {
 
 std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, const ChannelChoice& choice,
                                              camera::OwnCameras& cameras) {
-    struct Server { // of all cameras of the channel; knows the feed once that is there
+    struct Server { // shared by all cameras of the channel; has the feed once it exists
         SettledChannel settled;
         ChannelClock::TimePoint begin;
         std::weak_ptr<feed::Feed> feed;

@@ -8,9 +8,9 @@
 
 namespace fieldcast::channel {
 
-/// A channel that gives every client a camera: loads the scene and settles what all of them share, measures what frames
-/// take, and lets go of the device until somebody comes. What `shared` refers to and `cameras` must outlive every feed
-/// that is opened. Throws UserError if the scene is not usable.
+/// A channel that gives every client a camera. Loads the scene, settles what all cameras share, measures the cost of a
+/// frame, and frees its device memory until a client arrives. `cameras` and the references in `shared` must outlive
+/// every opened feed. Throws UserError if the scene is not usable.
 std::shared_ptr<feed::Feed> open_own_channel(const Channel::Shared& shared, const ChannelChoice& choice,
                                              camera::OwnCameras& cameras);
 

@@ -6,10 +6,10 @@
 
 namespace fieldcast::channel {
 
-/// What `fieldcast-server record` makes: a recording instead of a service. Its forms stand in the configuration.
+/// Work of `fieldcast-server record`, which writes a recording and does not serve. Its forms are in Settings.
 struct RecordJob {
     std::filesystem::path out = "recording.fcrec";
-    std::uint32_t frame_count = 30; ///< rendered one after the other, 1/fps apart, from a cold start
+    std::uint32_t frame_count = 30; ///< consecutive frames from a cold start, 1/fps apart
 };
 
 } // namespace fieldcast::channel

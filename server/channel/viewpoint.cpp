@@ -13,7 +13,7 @@ namespace fieldcast::channel {
 
 namespace {
 
-constexpr float kDefaultSpacing_m = 0.03F; ///< where nothing of the scene is in sight
+constexpr float kDefaultSpacing_m = 0.03F; ///< used if the camera sees no surface
 
 float aspect_of(const Settings& settings) {
     return static_cast<float>(settings.width_px) / static_cast<float>(settings.height_px);
@@ -40,7 +40,7 @@ void frame(scene::Scene& scene, const Settings& settings, const scene::RayProbe&
                                 {"fov_deg", static_cast<double>(framing.fovy_rad) * 180.0 / std::numbers::pi}});
 }
 
-/// By name, else by number; nothing if there is none.
+/// Finds a camera by name, or else by number.
 std::optional<std::size_t> find_index(const scene::Scene& scene, const std::string& wanted) {
     if (const scene::CameraNode* const found = scene::find_camera(scene, wanted)) {
         return static_cast<std::size_t>(found - scene.cameras.data());
@@ -59,7 +59,7 @@ std::string camera_names(const scene::Scene& scene) {
     return names + "and 'auto', which is always there";
 }
 
-/// Of the channel's largest grid, where neither flags nor file say it.
+/// Settles spacing and convergence for the largest grid, unless flags or file give them.
 void fit_lattice(const scene::Scene& scene, const Settings& settings, const scene::RayProbe& probe,
                  const std::string& name, Viewpoint& viewpoint) {
     const scene::CameraNode& camera = scene.cameras[viewpoint.camera];
@@ -88,7 +88,7 @@ void fit_lattice(const scene::Scene& scene, const Settings& settings, const scen
 } // namespace
 
 Viewpoint settle_viewpoint(scene::Scene& scene, const Settings& settings, const std::string& name) {
-    std::optional<scene::RayProbe> probe; // costs time and memory: only where the file leaves something open
+    std::optional<scene::RayProbe> probe; // costs time and memory, so it is made only if needed
     const auto rays = [&]() -> const scene::RayProbe& {
         return probe ? *probe : probe.emplace(scene, scene::pose_scene(scene, 0));
     };

@@ -10,16 +10,16 @@
 
 namespace fieldcast::channel {
 
-/// Where a channel's light field is seen from.
+/// Camera and lattice of a channel's light field.
 struct Viewpoint {
     std::size_t camera = 0; ///< index into Scene::cameras
     float spacing_m = 0.0F;
     float convergence_m = std::numeric_limits<float>::infinity();
 };
 
-/// The camera that `settings` names, or else the file's. A file without one is framed by itself, as are scenes for
-/// which `settings.framing` says something: a camera is added to `scene` then. Spacing and convergence that neither
-/// flags nor file give follow from the depths that the camera sees at the start. `name` is the channel's, for the log.
+/// The camera that `settings` names, or else the file's. A file without a camera, or any file with `settings.framing`,
+/// is framed automatically, which adds a camera to `scene`. Spacing and convergence follow from the depths that the
+/// camera sees at the start, unless flags or file give them. `name`: the channel's name, for the log.
 /// Throws UserError if there is no such camera.
 Viewpoint settle_viewpoint(scene::Scene& scene, const Settings& settings, const std::string& name);
 

@@ -12,13 +12,13 @@
 
 namespace fieldcast::command_line {
 
-/// What the command line asks for.
+/// The task of a command line, with its settings.
 struct Invocation {
     enum class Kind : std::uint8_t {
         kServe,
-        kPrint,   ///< only print `text`: --help, --version, --print-config, --make-token
-        kCheck,   ///< only validate
-        kHealth,  ///< only ask the server of `health`
+        kPrint,   ///< print `text` only: --help, --version, --print-config, --make-token
+        kCheck,   ///< validate only
+        kHealth,  ///< ask another server for its health only
         kRender,  ///< `job`, without serving
         kRecord,  ///< `record_job`, without serving
         kInspect, ///< `inspect_job`, without a device
@@ -29,12 +29,12 @@ struct Invocation {
     channel::OfflineJob job;
     channel::RecordJob record_job;
     InspectJob inspect_job;
-    std::vector<std::string> problems; ///< with the flags or the config; empty: nothing is wrong
+    std::vector<std::string> problems; ///< of flags and config; empty: none
     std::string text;
 };
 
-/// Reads flags, or a --config file with the same names. "render", "record" or "inspect" in front asks for files or
-/// a report instead of a service. Reads files that flags name, changes nothing.
+/// Reads flags, or a --config file with the same names. The words "render", "record" and "inspect" in front select
+/// another task than serving. Reads the files that flags name, but changes nothing.
 Invocation read_flags(int argc, const char* const* argv);
 
 } // namespace fieldcast::command_line

@@ -21,7 +21,7 @@ struct HealthText {
 
 void add_health_flags(CLI::App& app, HealthText& text);
 
-/// Throws UserError naming the flag. `certificate` and `key` are the server's own, shown to a server that asks for one.
+/// Throws UserError naming the flag. `certificate` and `key` are presented to a server that requires one.
 service::HealthQuestion read_health(const HealthText& text, const std::string& certificate, const std::string& key);
 
 } // namespace fieldcast::command_line

@@ -174,7 +174,7 @@ std::string point_text(const Json& point) {
     return text.str();
 }
 
-/// A line for each of many, at most so many.
+/// Writes a line per element, up to a largest number of lines.
 void write_some(std::ostringstream& text, const Json& entries, const std::function<std::string(const Json&)>& line) {
     constexpr std::size_t kMost = 12;
     for (std::size_t i = 0; i < std::min(kMost, entries.size()); ++i) {

@@ -15,7 +15,7 @@ namespace fieldcast::command_line {
 /// Flags about source images and views, as they were typed.
 struct LightFieldText {
     std::string size = "1280x720";
-    std::string convergence; ///< empty: inf, or as the scene's depths have it
+    std::string convergence; ///< empty: inf, or from the depths in view
     std::string largest_grid = "6x6";
     std::string sources = "middle";
     std::string guard_band = "auto";

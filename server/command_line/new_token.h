@@ -5,8 +5,8 @@
 
 namespace fieldcast::command_line {
 
-/// A new token and the line that makes a server know it, each under a comment that says for whom it is. Throws
-/// UserError if `name` or `role` is not one.
+/// A new token and its line for --tokens, each under a comment that names its recipient. Throws
+/// UserError if `name` or `role` is not valid.
 std::string new_token_text(const std::string& name, const std::string& role);
 
 } // namespace fieldcast::command_line

@@ -5,7 +5,7 @@
 
 namespace fieldcast::command_line {
 
-/// Tells others the port. Whoever sees the file sees all of it; it is removed on destruction.
+/// A file with the port number. It appears with its full content, and is removed on destruction.
 class PortFile {
 public:
     /// Throws UserError if it cannot be written.

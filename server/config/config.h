@@ -13,7 +13,7 @@
 
 namespace fieldcast::config {
 
-/// Where a server listens if nothing else is asked for: loopback only.
+/// Default of --listen: loopback only.
 inline const HostPort kDefaultListen{.host = "127.0.0.1", .port = 50151};
 
 /// Everything that a server can be configured with, with defaults. Validated once, then never changed.

@@ -59,7 +59,7 @@ bool is_same(const fs::path& a, const fs::path& b) {
     return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
 }
 
-/// Why nobody can write it here; nothing: it can be written, or made.
+/// Reason why the file cannot be written; empty: it can be written or created.
 std::optional<std::string> writing_problem(const NamedFile& output) {
     const fs::path& file = output.file;
     std::error_code ignored;

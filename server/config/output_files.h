@@ -5,7 +5,7 @@
 
 namespace fieldcast::config {
 
-/// Files that a server is to write and cannot, or must not because another flag names them too. Nothing is written.
+/// Problems of output files: files that cannot be written, or that another flag names as well. Writes nothing.
 std::vector<std::string> output_problems(const Config& config);
 
 } // namespace fieldcast::config
