@@ -59,6 +59,7 @@ struct CommandLine {
     std::string config_file;
     bool only_check = false;
     bool only_print = false;
+    bool only_list_cameras = false;
     std::vector<std::string> new_token;
     Task task = Task::kServe;
     channel::OfflineJob job;
@@ -121,6 +122,7 @@ private:
         add(app.add_option("--config", config_file, "TOML file with the names of flags; flags win."));
         add(app.add_flag("--check-config", only_check, "Validate, report all problems and exit."));
         add(app.add_flag("--print-config", only_print, "Print the resulting settings as a --config file and exit."));
+        add(app.add_flag("--list-cameras", only_list_cameras, "Print the cameras of all scenes and exit."));
         add(app.add_option("--make-token", new_token,
                            "NAME ROLE: print a new token and its line for --tokens, and exit.")
                 ->type_size(2)
@@ -165,6 +167,34 @@ void check_each(FileArguments& file) {
     });
 }
 
+std::string cameras_text(const channel::Settings& rendering) {
+    std::string text;
+    for (const channel::ChannelChoice& channel : rendering.channels) {
+        text += camera_list(channel.scene);
+    }
+    return text;
+}
+
+/// Sets what the flags of `all` ask for; `invocation` has its problems already.
+void set_task(Invocation& invocation, CommandLine& all) {
+    if (all.only_print) {
+        invocation.kind = Invocation::Kind::kPrint;
+        invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
+    } else if (all.only_list_cameras) {
+        invocation.kind = Invocation::Kind::kPrint;
+        invocation.text = invocation.problems.empty() ? cameras_text(all.config.rendering) : "";
+    } else if (all.only_check) {
+        invocation.kind = Invocation::Kind::kCheck;
+    } else if (all.task == Task::kRecord) {
+        invocation.kind = Invocation::Kind::kRecord;
+        invocation.record_job = std::move(all.record_job);
+    } else if (all.task == Task::kRender) {
+        invocation.kind = Invocation::Kind::kRender;
+        invocation.job = std::move(all.job);
+        invocation.job.products = read_products(all.products);
+    }
+}
+
 /// What the arguments ask for, together with those of a --config file.
 Invocation read_all(const std::vector<std::string>& arguments, const CommandLine& typed) {
     FileArguments file;
@@ -198,19 +228,7 @@ Invocation read_all(const std::vector<std::string>& arguments, const CommandLine
     for (const std::string& problem : problems) {
         invocation.problems.push_back(with_place(problem, file.places));
     }
-    if (all.only_print) {
-        invocation.kind = Invocation::Kind::kPrint;
-        invocation.text = invocation.problems.empty() ? config_text(all.app) : "";
-    } else if (all.only_check) {
-        invocation.kind = Invocation::Kind::kCheck;
-    } else if (all.task == Task::kRecord) {
-        invocation.kind = Invocation::Kind::kRecord;
-        invocation.record_job = std::move(all.record_job);
-    } else if (all.task == Task::kRender) {
-        invocation.kind = Invocation::Kind::kRender;
-        invocation.job = std::move(all.job);
-        invocation.job.products = read_products(all.products);
-    }
+    set_task(invocation, all);
     invocation.config = std::move(all.config);
     return invocation;
 }

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -185,6 +186,11 @@ void write_some(std::ostringstream& text, const Json& entries, const std::functi
     }
 }
 
+std::string camera_text(const Json& camera) {
+    return std::to_string(camera["number"].get<int>()) + " " + camera["name"].get<std::string>() +
+           (camera["is_animated"].get<bool>() ? ", moves" : "");
+}
+
 std::string text_of(const Json& report) {
     std::ostringstream text;
     text << report["file"].get<std::string>() << "\n\n";
@@ -200,10 +206,7 @@ std::string text_of(const Json& report) {
     text << "  lights        " << counted(report["lights"]) << "; environment "
          << report["environment"].get<std::string>() << '\n';
     text << "  cameras       " << report["cameras"].size() << '\n';
-    write_some(text, report["cameras"], [](const Json& camera) {
-        return std::to_string(camera["number"].get<int>()) + " " + camera["name"].get<std::string>() +
-               (camera["is_animated"].get<bool>() ? ", moves" : "");
-    });
+    write_some(text, report["cameras"], camera_text);
     text << "  camera auto   " << report["camera_auto"]["place"].get<std::string>() << ", from "
          << point_text(report["camera_auto"]["look_from"]) << " to " << point_text(report["camera_auto"]["look_at"])
          << '\n';
@@ -225,6 +228,16 @@ std::string text_of(const Json& report) {
 std::string inspect(const InspectJob& job) {
     const Json report = report_of(job.file);
     return job.as_json ? report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text_of(report);
+}
+
+std::string camera_list(const std::filesystem::path& file) {
+    const Json cameras = cameras_of(scene::load_scene(file, scene::LoadOptions{}));
+    std::ostringstream text;
+    text << printable(file.string()) << (cameras.empty() ? ": no camera; --camera auto frames the scene\n" : ":\n");
+    for (const Json& camera : cameras) {
+        text << "  " << printable(camera_text(camera)) << ", " << std::lround(camera["fov_deg"].get<double>()) << "°\n";
+    }
+    return text.str();
 }
 
 InspectInvocation read_inspect(std::vector<std::string> arguments) {

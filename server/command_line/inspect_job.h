@@ -16,6 +16,10 @@ struct InspectJob {
 /// The description: a text for people, or one JSON object. Throws UserError if the file cannot be opened as a scene.
 std::string inspect(const InspectJob& job);
 
+/// The cameras of a glTF file, one per line: the number and name that --camera accepts, field of view, whether it moves.
+/// Throws UserError if the file cannot be opened as a scene.
+std::string camera_list(const std::filesystem::path& file);
+
 struct InspectInvocation {
     InspectJob job;
     std::string text; ///< not empty: print only this (--help)

@@ -66,6 +66,13 @@ TEST(Inspect, IsAskedForByAWord) {
     EXPECT_THROW(inspect({.file = "absent.glb"}), UserError);
 }
 
+TEST(Inspect, ListsTheCamerasThatTheCameraFlagAccepts) {
+    const Invocation asked = read({"--scene", kScene, "--list-cameras"});
+    EXPECT_EQ(asked.kind, Invocation::Kind::kPrint);
+    EXPECT_THAT(asked.text, HasSubstr("atelier.gltf:\n  0 LightField"));
+    EXPECT_THAT(read({"--list-cameras"}).problems, testing::Contains(HasSubstr("no scene given")));
+}
+
 TEST(Inspect, AWordThatIsNoTaskIsToldWhatMayBeMeant) {
     EXPECT_THAT(read({"rendr", "--scene", kScene}).problems,
                 testing::Contains(HasSubstr("rendr: belongs to no flag; did you mean render?")));
